@@ -1,0 +1,1 @@
+#include "lobefit/core/ellipsoid.h"

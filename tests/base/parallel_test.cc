@@ -1,0 +1,32 @@
+#include "lobefit/base/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace lobefit {
+namespace {
+
+TEST(ThreadPool, VisitsEachPieceOnceOnAnyNumberOfThreads) {
+  for (const int threads : {1, 2, 8}) {
+    ThreadPool pool(threads);
+    for (int round = 0; round < 50; ++round) {
+      std::vector<std::atomic<int>> visits(97);
+      pool.Run(visits.size(), [&](std::size_t piece) { ++visits[piece]; });
+      for (const std::atomic<int>& count : visits) EXPECT_EQ(count, 1);
+    }
+  }
+}
+
+TEST(ThreadPool, HandsOnAnExceptionAndStaysUsable) {
+  ThreadPool pool(4);
+  EXPECT_THROW(pool.Run(100, [](std::size_t piece) { if (piece == 13) throw std::runtime_error("13"); }), std::runtime_error);
+  std::atomic<int> count = 0;
+  pool.Run(10, [&](std::size_t) { ++count; });
+  EXPECT_EQ(count, 10);
+}
+
+}  // namespace
+}  // namespace lobefit

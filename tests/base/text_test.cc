@@ -1,0 +1,53 @@
+#include "lobefit/base/text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lobefit {
+namespace {
+
+TEST(ParseDouble, TakesTheWholeFieldOrNothing) {
+  EXPECT_EQ(ParseDouble("1.5"), 1.5);
+  EXPECT_EQ(ParseDouble(" +2e-3\r"), 2e-3);
+  EXPECT_EQ(ParseDouble("-.5"), -0.5);
+  for (const char* bad : {"", " ", "1,5", "0.5abc", "1 2", "0x10", "--1", "+-1", "1e", "e5", "1.5f"}) {
+    EXPECT_FALSE(ParseDouble(bad).has_value()) << bad;
+  }
+}
+
+TEST(ParseDouble, NonFiniteAndOutOfRange) {
+  EXPECT_TRUE(std::isnan(*ParseDouble("nan")));
+  EXPECT_TRUE(std::isnan(*ParseDouble("NaN")));
+  EXPECT_EQ(*ParseDouble("-inf"), -HUGE_VAL);
+  EXPECT_EQ(*ParseDouble("1e999"), HUGE_VAL);
+  EXPECT_EQ(*ParseDouble("-1e999"), -HUGE_VAL);
+  EXPECT_EQ(*ParseDouble("1e-999"), 0.0);
+}
+
+TEST(ParseInteger, RefusesFractionsAndOverflow) {
+  EXPECT_EQ(ParseInteger("42"), 42);
+  EXPECT_EQ(ParseInteger("-7 "), -7);
+  for (const char* bad : {"", "4.0", "9223372036854775808", "1e3"}) EXPECT_FALSE(ParseInteger(bad).has_value()) << bad;
+}
+
+TEST(FormatDouble, ReadsBackAsTheSameDouble) {
+  for (const double value : {0.1, 1.0 / 3, 1e-300, -2.5e17, 0.0}) EXPECT_EQ(ParseDouble(FormatDouble(value)), value);
+}
+
+TEST(LineReader, TakesBothLineEndsAndALastLineWithout) {
+  LineReader lines("a\r\nb\n\nc");
+  std::string_view line;
+  std::vector<std::string> found;
+  while (lines.Next(&line)) found.emplace_back(line);
+  EXPECT_EQ(found, (std::vector<std::string>{"a", "b", "", "c"}));
+  EXPECT_EQ(lines.line_number(), 4U);
+}
+
+TEST(DidYouMean, SuggestsOnlyNearNames) {
+  EXPECT_EQ(DidYouMean("alhpa", {"alpha", "beta"}), " (did you mean 'alpha'?)");
+  EXPECT_EQ(DidYouMean("gamma", {"alpha", "beta"}), "");
+}
+
+}  // namespace
+}  // namespace lobefit
