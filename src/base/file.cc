@@ -1,17 +1,17 @@
 #include "lobefit/base/file.h"
 
-#include <fcntl.h>
-#include <openssl/evp.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <memory>
 #include <utility>
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "lobefit/base/error.h"
 
@@ -32,7 +32,8 @@ MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
   if (!known || !S_ISREG(status.st_mode)) {
     const bool folder = known && S_ISDIR(status.st_mode);
     close(descriptor);
-    throw InputError(path.string() + ": is " + (folder ? "a folder" : "not a regular file") + "; name a measurement file");
+    throw InputError(path.string() + ": is " + (folder ? "a folder" : "not a regular file") +
+                     "; name a measurement file");
   }
   size_ = static_cast<std::size_t>(status.st_size);
   if (size_ > 0) {
@@ -77,7 +78,8 @@ void WriteFileThroughTemporary(const std::filesystem::path& path,
   } catch (const std::filesystem::filesystem_error& error) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
-    throw OutputError(path.string() + ": cannot be written: " + error.code().message() + "; choose another place with --out");
+    throw OutputError(path.string() + ": cannot be written: " + error.code().message() +
+                      "; choose another place with --out");
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
@@ -88,7 +90,8 @@ void WriteFileThroughTemporary(const std::filesystem::path& path,
 void WriteFileAtomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
   WriteFileThroughTemporary(path, [&](const std::filesystem::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
-    if (!out) throw OutputError(path.string() + ": cannot be written: " + SystemReason() + "; choose another place with --out");
+    if (!out)
+      throw OutputError(path.string() + ": cannot be written: " + SystemReason() + "; choose another place with --out");
     write(out);
     out.flush();
     if (!out) throw OutputError(path.string() + ": writing failed: " + SystemReason() + "; is the disk full?");
@@ -96,7 +99,8 @@ void WriteFileAtomically(const std::filesystem::path& path, const std::function<
 }
 
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes) {
-  WriteFileAtomically(path, [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+  WriteFileAtomically(path,
+                      [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
 }
 
 }  // namespace lobefit

@@ -32,12 +32,13 @@ class MappedFile {
 // SHA-256 as 64 lower-case hexadecimal digits.
 std::string Sha256Hex(std::string_view bytes);
 
-// Writes `path` by way of a temporary name in the same folder, which is renamed when `write` has returned and the data are on
-// disk; the temporary file is removed if anything throws. Throws OutputError.
+// Writes `path` by way of a temporary name in the same folder, which is renamed when `write` has returned and the data
+// are on disk; the temporary file is removed if anything throws. Throws OutputError.
 void WriteFileAtomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
 // The same for libraries that open the file themselves: `write` receives the temporary name.
-void WriteFileThroughTemporary(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
+void WriteFileThroughTemporary(const std::filesystem::path& path,
+                               const std::function<void(const std::filesystem::path&)>& write);
 
 }  // namespace lobefit

@@ -1,5 +1,5 @@
-// Threads over independent pieces of work. Which thread takes which piece is not fixed: a caller that reduces must store one
-// partial result a piece and add them in the pieces' order, so that 1 and 8 threads give the same bits.
+// Threads over independent pieces of work. Which thread takes which piece is not fixed: a caller that reduces must
+// store one partial result a piece and add them in the pieces' order, so that 1 and 8 threads give the same bits.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@ namespace lobefit {
 // Number of processors that this process may use, at least 1.
 int HardwareThreads();
 
-// Calls work(piece) once for each piece in [0, pieces), on at most `threads` threads (the caller is one of them). The first
-// exception that a piece throws stops the rest and is thrown again here.
+// Calls work(piece) once for each piece in [0, pieces), on at most `threads` threads (the caller is one of them). The
+// first exception that a piece throws stops the rest and is thrown again here.
 void ParallelFor(std::size_t pieces, int threads, const std::function<void(std::size_t)>& work);
 
 // A pool of threads that stays alive between calls, for loops of well under a millisecond.

@@ -1,9 +1,9 @@
 #include "lobefit/base/progress.h"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <utility>
+
+#include <unistd.h>
 
 namespace lobefit {
 

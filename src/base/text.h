@@ -20,8 +20,8 @@ std::vector<std::string_view> Split(std::string_view text, char separator);
 // Pieces between runs of blanks and tabs; none is empty.
 std::vector<std::string_view> SplitBlanks(std::string_view text);
 
-// The number that fills `field` exactly (blanks at both ends allowed, one leading '+' allowed, "nan" and "inf" in any case
-// allowed), else nothing. "0,5", "1.0x", "" and "0x10" give nothing. 1e-400 gives 0 and 1e400 gives infinity.
+// The number that fills `field` exactly (blanks at both ends allowed, one leading '+' allowed, "nan" and "inf" in any
+// case allowed), else nothing. "0,5", "1.0x", "" and "0x10" give nothing. 1e-400 gives 0 and 1e400 gives infinity.
 std::optional<double> ParseDouble(std::string_view field);
 std::optional<long long> ParseInteger(std::string_view field);
 

@@ -8,7 +8,8 @@ namespace lobefit {
 // Unit vector of polar angle theta from +z and azimuth phi counter-clockwise from +x seen from +z; radians.
 Vec3 FromSpherical(double theta, double phi);
 
-// Polar angle in [0, pi], accurate near 0 and pi too (atan2, not acos). Azimuth in (-pi, pi], 0 for a direction along z.
+// Polar angle in [0, pi], accurate near 0 and pi too (atan2, not acos). Azimuth in (-pi, pi], 0 for a direction along
+// z.
 double PolarAngle(const Vec3& w);
 double Azimuth(const Vec3& w);
 
@@ -19,7 +20,8 @@ Vec3 HalfVector(const Vec3& wi, const Vec3& wo);
 Vec3 Reflect(const Vec3& w, const Vec3& m);
 
 // Half and difference angles, radians: wh = FromSpherical(theta_h, phi_h);
-// the difference vector d = Ry(-theta_h) Rz(-phi_h) wi = FromSpherical(theta_d, phi_d). Where theta_h = 0, phi_h = 0 by choice.
+// the difference vector d = Ry(-theta_h) Rz(-phi_h) wi = FromSpherical(theta_d, phi_d). Where theta_h = 0, phi_h = 0 by
+// choice.
 struct HalfDifference {
   double theta_h, phi_h, theta_d, phi_d;
 };

@@ -71,7 +71,9 @@ Vec3T<T> operator*(const Mat3T<T>& a, const Vec3T<T>& v) {
 }
 template <class T>
 Mat3T<T> Transposed(const Mat3T<T>& a) {
-  return {{{{a.row[0].x, a.row[1].x, a.row[2].x}, {a.row[0].y, a.row[1].y, a.row[2].y}, {a.row[0].z, a.row[1].z, a.row[2].z}}}};
+  return {{{{a.row[0].x, a.row[1].x, a.row[2].x},
+            {a.row[0].y, a.row[1].y, a.row[2].y},
+            {a.row[0].z, a.row[1].z, a.row[2].z}}}};
 }
 template <class T>
 Mat3T<T> operator*(const Mat3T<T>& a, const Mat3T<T>& b) {

@@ -1,9 +1,9 @@
 #include "lobefit/base/file.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <stdexcept>
+
+#include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
 
@@ -23,14 +23,16 @@ TEST(MappedFile, NamesWhatItCannotRead) {
 }
 
 TEST(Sha256Hex, AgreesWithThePublishedVector) {
-  EXPECT_EQ(Sha256Hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");  // FIPS 180-4, example 1
+  EXPECT_EQ(Sha256Hex("abc"),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");  // FIPS 180-4, example 1
 }
 
 TEST(WriteFileAtomically, LeavesTheOldFileWhenWritingFails) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "atomic";
   std::filesystem::create_directories(folder);
   WriteFileAtomically(folder / "f", std::string_view("old"));
-  EXPECT_THROW(WriteFileAtomically(folder / "f", [](std::ostream&) { throw std::runtime_error("x"); }), std::runtime_error);
+  EXPECT_THROW(WriteFileAtomically(folder / "f", [](std::ostream&) { throw std::runtime_error("x"); }),
+               std::runtime_error);
   EXPECT_EQ(MappedFile(folder / "f").bytes(), "old");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()), 1);
   EXPECT_THROW(WriteFileAtomically("/no/such/folder/f", std::string_view("x")), OutputError);

@@ -1,10 +1,10 @@
 #include "lobefit/base/parallel.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <stdexcept>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace lobefit {
 namespace {
@@ -22,7 +22,11 @@ TEST(ThreadPool, VisitsEachPieceOnceOnAnyNumberOfThreads) {
 
 TEST(ThreadPool, HandsOnAnExceptionAndStaysUsable) {
   ThreadPool pool(4);
-  EXPECT_THROW(pool.Run(100, [](std::size_t piece) { if (piece == 13) throw std::runtime_error("13"); }), std::runtime_error);
+  EXPECT_THROW(pool.Run(100,
+                        [](std::size_t piece) {
+                          if (piece == 13) throw std::runtime_error("13");
+                        }),
+               std::runtime_error);
   std::atomic<int> count = 0;
   pool.Run(10, [&](std::size_t) { ++count; });
   EXPECT_EQ(count, 10);

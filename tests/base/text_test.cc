@@ -1,8 +1,8 @@
 #include "lobefit/base/text.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 namespace lobefit {
 namespace {

@@ -1,8 +1,8 @@
 #include "lobefit/math/directions.h"
 
-#include <gtest/gtest.h>
-
 #include <random>
+
+#include <gtest/gtest.h>
 
 namespace lobefit {
 namespace {

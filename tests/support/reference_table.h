@@ -1,8 +1,6 @@
-// A table of reference values: CSV with a header, kept in tests/data/reference. Numbers are parsed as doubles (inputs are exact
-// doubles, shortest form), text columns (kind) are kept.
+// A table of reference values: CSV with a header, kept in tests/data/reference. Numbers are parsed as doubles (inputs
+// are exact doubles, shortest form), text columns (kind) are kept.
 #pragma once
-
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
@@ -11,6 +9,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "lobefit/base/text.h"
 

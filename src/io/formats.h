@@ -1,0 +1,21 @@
+// The table of formats that can be read: a new format is one source file and one row here.
+#pragma once
+
+#include <vector>
+
+#include "lobefit/io/read.h"
+
+namespace lobefit {
+
+// In the order of recognition: formats with a magic number first, then by size, then text formats from strict to loose.
+const std::vector<Format>& Formats();
+
+// Each reader is in the source file of its name.
+bool IsMerl(std::string_view bytes);
+Measurement ReadMerl(const InputFile& file, const ReadOptions& options);
+bool IsRgl(std::string_view bytes);
+Measurement ReadRgl(const InputFile& file, const ReadOptions& options);
+bool IsCsv(std::string_view bytes);
+Measurement ReadCsv(const InputFile& file, const ReadOptions& options);
+
+}  // namespace lobefit

@@ -1,0 +1,131 @@
+#include "lobefit/measurement/measurement.h"
+
+#include <array>
+#include <cmath>
+#include <unordered_set>
+#include <utility>
+
+namespace lobefit {
+namespace {
+
+template <class Function>
+void ForEachArray(Samples& samples, Function&& function) {
+  for (std::vector<double>* array :
+       {&samples.wi_x, &samples.wi_y, &samples.wi_z, &samples.wo_x, &samples.wo_y, &samples.wo_z}) {
+    function(*array);
+  }
+  for (std::vector<double>& array : samples.values) function(array);
+  if (!samples.weight.empty()) function(samples.weight);
+  if (!samples.solid_angle.empty()) function(samples.solid_angle);
+  function(samples.origin);
+}
+
+bool IsFinite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// Directions rounded to 1e-9, as a key for finding repeated pairs.
+struct PairKey {
+  std::array<std::int64_t, 6> rounded;
+  bool operator==(const PairKey&) const = default;
+};
+struct PairKeyHash {
+  std::size_t operator()(const PairKey& key) const {
+    std::uint64_t hash = 0x9e3779b97f4a7c15U;
+    for (const std::int64_t part : key.rounded) {
+      hash ^= static_cast<std::uint64_t>(part) + 0x9e3779b97f4a7c15U + (hash << 6) + (hash >> 2);
+      hash *= 0xff51afd7ed558ccdU;
+    }
+    return hash ^ (hash >> 32);
+  }
+};
+
+PairKey KeyOf(const Vec3& wi, const Vec3& wo) {
+  const auto rounded = [](double x) { return static_cast<std::int64_t>(std::llround(x * 1e9)); };
+  return {{rounded(wi.x), rounded(wi.y), rounded(wi.z), rounded(wo.x), rounded(wo.y), rounded(wo.z)}};
+}
+
+}  // namespace
+
+void Samples::Resize(std::size_t count) {
+  ForEachArray(*this, [&](auto& array) { array.resize(count); });
+}
+
+void Samples::Keep(const std::vector<std::uint8_t>& keep) {
+  ForEachArray(*this, [&](auto& array) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < array.size(); ++i) {
+      if (keep[i] != 0) array[kept++] = array[i];
+    }
+    array.resize(kept);
+  });
+}
+
+Samples Samples::Subset(const std::vector<std::size_t>& indices) const {
+  Samples subset;
+  subset.values.resize(values.size());
+  const auto pick = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.reserve(indices.size());
+    for (const std::size_t i : indices) to.push_back(from[i]);
+  };
+  pick(wi_x, subset.wi_x);
+  pick(wi_y, subset.wi_y);
+  pick(wi_z, subset.wi_z);
+  pick(wo_x, subset.wo_x);
+  pick(wo_y, subset.wo_y);
+  pick(wo_z, subset.wo_z);
+  for (std::size_t c = 0; c < values.size(); ++c) pick(values[c], subset.values[c]);
+  pick(weight, subset.weight);
+  pick(solid_angle, subset.solid_angle);
+  pick(origin, subset.origin);
+  return subset;
+}
+
+void Samples::Append(const Vec3& wi, const Vec3& wo, const double* channel_values, std::uint32_t origin_index) {
+  wi_x.push_back(wi.x);
+  wi_y.push_back(wi.y);
+  wi_z.push_back(wi.z);
+  wo_x.push_back(wo.x);
+  wo_y.push_back(wo.y);
+  wo_z.push_back(wo.z);
+  for (std::size_t c = 0; c < values.size(); ++c) values[c].push_back(channel_values[c]);
+  origin.push_back(origin_index);
+}
+
+MeasurementBuilder::MeasurementBuilder(Channels channels) {
+  measurement_.samples.values.resize(channels.size());
+  measurement_.channels = std::move(channels);
+}
+
+bool MeasurementBuilder::Add(const Vec3& wi, const Vec3& wo, const double* values, std::uint32_t origin_index) {
+  bool finite = IsFinite(wi) && IsFinite(wo);
+  for (std::size_t c = 0; c < measurement_.channels.size(); ++c) finite = finite && std::isfinite(values[c]);
+  if (!finite) {
+    Skip(SetAsideReason::kNotFinite);
+    return false;
+  }
+  // 1e-9 is far below any instrument's resolution and far above the rounding of cos(90 degrees) = 6e-17.
+  const Vec3 unit_wi = Normalized(wi), unit_wo = Normalized(wo);
+  if (!(unit_wi.z > 1e-9) || !(unit_wo.z > 1e-9)) {
+    Skip(SetAsideReason::kBelowHorizon);
+    return false;
+  }
+  measurement_.samples.Append(unit_wi, unit_wo, values, origin_index);
+  return true;
+}
+
+Measurement MeasurementBuilder::Finish() {
+  Samples& samples = measurement_.samples;
+  std::unordered_set<PairKey, PairKeyHash> seen;
+  seen.reserve(samples.size());
+  std::vector<std::uint8_t> keep(samples.size(), 1);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!seen.insert(KeyOf(samples.wi(i), samples.wo(i))).second) {
+      keep[i] = 0;
+      Skip(SetAsideReason::kDuplicate);
+    }
+  }
+  samples.Keep(keep);
+  return std::move(measurement_);
+}
+
+}  // namespace lobefit

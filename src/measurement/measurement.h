@@ -1,0 +1,88 @@
+// A measured BRDF: samples as a structure of arrays, and what is known about them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lobefit/math/vec.h"
+#include "lobefit/measurement/set_aside.h"
+
+namespace lobefit {
+
+// What the values of a sample stand for.
+struct Channels {
+  // "R" "G" "B"; "Y" for one luminance-like channel; "X" "Y" "Z"; or wavelengths, "550nm".
+  std::vector<std::string> names;
+  // Wavelengths in nanometres, one a channel; empty where the channels are not wavelengths.
+  std::vector<double> wavelengths_nm;
+
+  std::size_t size() const { return names.size(); }
+};
+
+// Samples as a structure of arrays; all arrays have the same length or, where said, none.
+struct Samples {
+  // Unit directions away from the surface (n = +z): wi to the light, wo to the viewer; both above the horizon.
+  std::vector<double> wi_x, wi_y, wi_z, wo_x, wo_y, wo_z;
+  // values[channel][sample]: f_r in 1/sr, no cosine; finite; may be negative (noise).
+  std::vector<std::vector<double>> values;
+  // Statistical weight from stated uncertainties or repetitions, mean 1. Empty: all 1.
+  std::vector<double> weight;
+  // Measure of the sample's cell in the space of direction pairs (any constant factor), for weighting by solid angle.
+  // Empty: not known, the file lists directions without cells.
+  std::vector<double> solid_angle;
+  // Where the sample stands in its file: line of a text file (from 1), index of the cell in a table (from 0).
+  std::vector<std::uint32_t> origin;
+
+  std::size_t size() const { return wi_x.size(); }
+  Vec3 wi(std::size_t i) const { return {wi_x[i], wi_y[i], wi_z[i]}; }
+  Vec3 wo(std::size_t i) const { return {wo_x[i], wo_y[i], wo_z[i]}; }
+
+  // Resizes every array that is in use (values, and weight and solid_angle where not empty) to `count` samples.
+  void Resize(std::size_t count);
+  // Keeps the samples i with keep[i] != 0, in order.
+  void Keep(const std::vector<std::uint8_t>& keep);
+  // The samples at `indices`, in that order.
+  Samples Subset(const std::vector<std::size_t>& indices) const;
+  // Adds one sample; values[c] for each channel. Does not touch weight and solid_angle.
+  void Append(const Vec3& wi, const Vec3& wo, const double* channel_values, std::uint32_t origin_index);
+};
+
+struct Measurement {
+  Channels channels;
+  Samples samples;
+  SetAside set_aside;
+  // True where the file cannot express a dependence on azimuth (MERL, isotropic tables): the fit then takes an
+  // isotropic model.
+  bool isotropic = false;
+  // Name of the format as in `lobefit info` ("merl", "rgl", "csv", ...), file name without folder, SHA-256 of the file.
+  std::string format;
+  std::string source;
+  std::string sha256;
+  // What the file leaves open or states about itself, by option name, with where it came from: {"merl-cell", "centre
+  // (default)"}.
+  std::map<std::string, std::string> conventions;
+  // Remarks for people: rectified noise recognised, columns ignored.
+  std::vector<std::string> remarks;
+};
+
+// Samples are appended one by one; what cannot be used is set aside and counted here.
+class MeasurementBuilder {
+ public:
+  explicit MeasurementBuilder(Channels channels);
+  // Directions of any length > 0, away from the surface; values in f_r, one a channel. A direction with z <= 0 is below
+  // the horizon; a direction or value that is not finite is set aside as kNotFinite. Returns true where the sample was
+  // taken.
+  bool Add(const Vec3& wi, const Vec3& wo, const double* values, std::uint32_t origin_index);
+  void Skip(SetAsideReason reason, std::size_t count = 1) { measurement_.set_aside.Add(reason, count); }
+  Measurement& measurement() { return measurement_; }
+  // Sets aside repeated pairs of directions (equal to 1e-9 rad; the first one stays), then hands the measurement over.
+  Measurement Finish();
+
+ private:
+  Measurement measurement_;
+};
+
+}  // namespace lobefit
