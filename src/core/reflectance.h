@@ -1,0 +1,39 @@
+// A model with its parameters filled in: what reports draw, synthesis samples and exporters tabulate.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lobefit/core/ggx_lobe.h"
+#include "lobefit/core/model.h"
+
+namespace lobefit {
+
+// f_r = diffuse / pi + sum over lobes of F D G2 / (4 cos_theta_i cos_theta_o) [Walter eq 4-6].
+class Reflectance {
+ public:
+  // `values` in the order of Parameters(model), inside units (radians). Throws std::invalid_argument where their number or the number
+  // of channels does not fit.
+  Reflectance(const Model& model, const ParameterValues& values, std::size_t channels);
+
+  std::size_t channels() const { return channels_; }
+
+  // f_r[c], 1/sr, for unit directions away from the surface; 0 where one of them is at or below the horizon.
+  void Evaluate(const Vec3& wi, const Vec3& wo, double* f_r) const;
+
+  // The same for arrays of directions, all above the horizon: f_r[c][i]. Same bits as Evaluate.
+  void Evaluate(const DirectionArrays& directions, std::vector<std::vector<double>>* f_r) const;
+
+  const std::vector<SlopeCoordinates>& lobe_shapes() const { return shapes_; }
+
+ private:
+  double Channel(std::size_t channel, const double* specular, const double* schlick) const;
+
+  Model model_;
+  std::size_t channels_;
+  std::vector<SlopeCoordinates> shapes_;        // one a lobe
+  std::vector<std::vector<double>> amplitude_;  // f0 or scale, [lobe][channel]
+  std::vector<double> diffuse_;                 // albedo, [channel]; zero without a diffuse part
+};
+
+}  // namespace lobefit

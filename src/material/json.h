@@ -1,0 +1,19 @@
+// *.material.json: writing, and strict reading with the place of what is wrong. The schema is src/material/material.schema.json.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "lobefit/material/material.h"
+
+namespace lobefit {
+
+// The document, indented by two blanks, numbers with 17 significant digits where needed, NaN as null.
+std::string ToJson(const Material& material);
+
+// Throws InputError that names the file and the member.
+Material MaterialFromJson(const std::string& text, const std::string& file_name);
+Material ReadMaterial(const std::filesystem::path& path);
+void WriteMaterial(const Material& material, const std::filesystem::path& path);
+
+}  // namespace lobefit

@@ -1,0 +1,87 @@
+// The result of a fit: parameters with their intervals, how good it is, and where it came from. It is what *.material.json holds and what
+// reports and exporters take.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lobefit/core/model.h"
+
+namespace lobefit {
+
+// One fitted parameter, inside units (radians). Each vector has one entry, or one a channel.
+struct FittedParameter {
+  std::vector<double> values;
+  // Standard error, robust to noise that differs from sample to sample. NaN: fixed, tied or not determined.
+  std::vector<double> standard_error;
+  // Standard error where the samples of one incident direction are taken as dependent (sandwich, clustered by incidence). NaN as above,
+  // or with fewer than two incidences.
+  std::vector<double> standard_error_clustered;
+  bool free = true;
+  bool at_bound = false;
+};
+
+// Error of the model under one metric: root mean square over all samples and channels, with the weights of the fit.
+struct MetricError {
+  std::string metric;
+  double rms = 0;
+};
+
+// A distinct minimum that the search found, best first.
+struct Minimum {
+  double cost = 0;                                         // half the sum of squares, on all samples
+  std::vector<std::pair<std::string, double>> parameters;  // JSON names and outside values of the shape
+  std::size_t starts = 0;                                  // number of starts that ended there
+};
+
+struct Termination {
+  bool converged = false;
+  bool determined = false;
+  std::string message;  // in words
+  int iterations = 0;
+};
+
+struct Source {
+  std::string file, sha256, format;
+  std::map<std::string, std::string> conventions;
+};
+
+struct Material {
+  Model model;
+  std::vector<std::string> channels;
+  std::vector<double> wavelengths_nm;
+  std::vector<FittedParameter> parameters;  // in the order of Parameters(model)
+
+  // Names of the free entries (JSON names, per-channel ones with "[R]"), outside units, and their covariance, row-major.
+  std::vector<std::string> covariance_names;
+  std::vector<double> covariance;
+  // Slope-space form of each lobe: slope_x, slope_y, alpha_x, alpha_y (standard widths in slope), r.
+  std::vector<std::vector<double>> slope_space;
+
+  // Directions in parameter space that the data do not determine, in words.
+  std::vector<std::string> degenerate;
+  std::vector<std::string> remarks;
+
+  std::size_t samples_used = 0, samples_read = 0;
+  std::map<std::string, std::size_t> set_aside;
+  std::vector<MetricError> errors;
+  double cost = 0;
+  std::vector<Minimum> minima;
+  Termination termination;
+  std::map<std::string, double> timings_s;
+
+  Source source;
+  std::string recipe_name, recipe_reason;  // why this recipe, where it was chosen automatically
+  std::string metric, weighting, loss;
+  double theta_max_deg = 90;
+  std::string command;
+
+  // Inside values in the form that Reflectance takes.
+  ParameterValues Values() const;
+};
+
+}  // namespace lobefit
