@@ -11,21 +11,47 @@
 namespace lobefit {
 
 enum class AngleUnit { kDegrees, kRadians };
-// What the file's numbers are: f_r; f_r times the cosine of wo or of wi; pi f_r (reflectance factor); radiant intensity per
-// incident flux, which is f_r cos(theta_o) too but per irradiance of the whole sample.
+// What the file's numbers are: f_r; f_r times the cosine of wo or of wi; pi f_r (reflectance factor); radiant intensity
+// per incident flux, which is f_r cos(theta_o) too but per irradiance of the whole sample.
 enum class ValueKind { kBrdf, kBrdfCosO, kBrdfCosI, kReflectanceFactor, kIntensity };
 // Whether the file's incident direction points to the source (as here) or along the propagation of the light.
 enum class IncidentSense { kTowardsSource, kPropagation };
 enum class CellPosition { kCentre, kEdge };
+// The side of the sample that is measured: the one whose normal is +z in the file's coordinates, or the other.
+enum class Side { kFront, kBack };
+// BSDF-XML: WINDOW calls "Front" what faces outdoors, which is the side away from the normal of Radiance's coordinates.
+enum class XmlNaming { kWindow, kPlain };
+// ALTA "#VS 2": the two extra columns are the ends of the interval (as its manual says) or distances from the value (as
+// its code reads them).
+enum class IntervalKind { kBounds, kOffsets };
+// pab Mountain: azimuths as in the file, or turned so that the "up" direction of the header is +y, as Radiance does.
+enum class MountainAzimuth { kFile, kUp };
 
-// What files do not say and formats disagree on. Unset: the format's documented default, or what the file's header says. Every
-// choice that a reader makes is echoed in Measurement::conventions under the option's name on the command line.
+// What files do not say and formats disagree on. Unset: the format's documented default, or what the file's header
+// says. Every choice that a reader makes is echoed in Measurement::conventions under the option's name on the command
+// line.
 struct ReadOptions {
-  std::optional<AngleUnit> angle_unit;          // --angle-unit deg|rad          (csv)
-  std::optional<ValueKind> value_kind;          // --value-kind f|f-cos-o|f-cos-i|pi-f|intensity   (csv)
-  std::optional<IncidentSense> incident_sense;  // --incident towards|propagation (csv)
+  std::optional<AngleUnit> angle_unit;          // --angle-unit deg|rad          (csv, astm)
+  std::optional<ValueKind> value_kind;          // --value-kind f|f-cos-o|f-cos-i|pi-f|intensity   (csv, alta, astm)
+  std::optional<IncidentSense> incident_sense;  // --incident towards|propagation (csv, astm, fred)
   std::optional<std::string> value_column;      // --value-column NAME            (csv with several candidate columns)
   CellPosition merl_cell = CellPosition::kCentre;  // --merl-cell centre|edge      (merl)
+  // --side front|back (bsdf-xml, lighttools). Unset: front, or back where the file has only that.
+  std::optional<Side> side;
+  // --xml-naming window|plain (bsdf-xml). With "window", front reads the block "Reflection Back" and back "Reflection
+  // Front".
+  XmlNaming xml_naming = XmlNaming::kWindow;
+  // --xml-wavelength NAME (bsdf-xml). Unset: Visible (with CIE-X and CIE-Z, or CIE-u and CIE-v, where they are there),
+  // or all wavelengths that are numbers, or the only one in the file.
+  std::optional<std::string> xml_wavelength;
+  // --zemax-rotation-sign +1|-1 (zemax). The light's azimuth is this times SampleRotation; the format does not say
+  // which, and the azimuth of a fitted grain changes sign with it.
+  int zemax_rotation_sign = 1;
+  // --lighttools-azimuth DEGREES (lighttools). Azimuth of the light where the plane of incidence (POI) is 0.
+  double lighttools_azimuth_deg = 90;
+  // --alta-interval bounds|offsets (alta). Unset: bounds where every value lies between its two columns, else offsets.
+  std::optional<IntervalKind> alta_interval;
+  MountainAzimuth mountain_azimuth = MountainAzimuth::kFile;  // --mountain-azimuth file|up (mountain)
 };
 
 // An input file as the readers see it: its name for messages and its bytes.
@@ -34,7 +60,8 @@ struct InputFile {
   std::string_view bytes;
 };
 
-// One file format. `recognise` looks at content only, never at the name; `read` throws InputError with the place in the file.
+// One file format. `recognise` looks at content only, never at the name; `read` throws InputError with the place in the
+// file.
 struct Format {
   const char* name;
   const char* description;
@@ -45,8 +72,8 @@ struct Format {
 // The reader that recognises the bytes. Throws InputError that lists the known formats.
 const Format& RecogniseFormat(const InputFile& file);
 
-// Maps, recognises and reads a file; sets Measurement::format, source and sha256. Throws InputError for a file that cannot be read, is
-// not valid, or has no usable sample.
+// Maps, recognises and reads a file; sets Measurement::format, source and sha256. Throws InputError for a file that
+// cannot be read, is not valid, or has no usable sample.
 Measurement ReadMeasurement(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace lobefit
