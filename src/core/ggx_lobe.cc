@@ -36,9 +36,9 @@ void Loop(const DirectionArrays& in, const double* uniform, double* specular, do
   std::size_t i = 0;
   V64 cos, g[5];
   for (; i + lanes <= in.count; i += lanes) {
-    const V64 value = GgxSpecular<kGradient, kMasking>(p, hn::LoadU(d, in.wi_x + i), hn::LoadU(d, in.wi_y + i), hn::LoadU(d, in.wi_z + i),
-                                                       hn::LoadU(d, in.wo_x + i), hn::LoadU(d, in.wo_y + i), hn::LoadU(d, in.wo_z + i),
-                                                       &cos, g);
+    const V64 value = GgxSpecular<kGradient, kMasking>(p, hn::LoadU(d, in.wi_x + i), hn::LoadU(d, in.wi_y + i),
+                                                       hn::LoadU(d, in.wi_z + i), hn::LoadU(d, in.wo_x + i),
+                                                       hn::LoadU(d, in.wo_y + i), hn::LoadU(d, in.wo_z + i), &cos, g);
     hn::StoreU(value, d, specular + i);
     hn::StoreU(cos, d, cos_d + i);
     if constexpr (kGradient) {
@@ -53,8 +53,9 @@ void Loop(const DirectionArrays& in, const double* uniform, double* specular, do
   for (std::size_t j = 0; j < 6; ++j) {
     for (std::size_t k = 0; k < lanes; ++k) pad[j][k] = i + k < in.count ? from[j][i + k] : (j % 3 == 2 ? 1.0 : 0.0);
   }
-  const V64 value = GgxSpecular<kGradient, kMasking>(p, hn::LoadU(d, pad[0]), hn::LoadU(d, pad[1]), hn::LoadU(d, pad[2]),
-                                                     hn::LoadU(d, pad[3]), hn::LoadU(d, pad[4]), hn::LoadU(d, pad[5]), &cos, g);
+  const V64 value =
+      GgxSpecular<kGradient, kMasking>(p, hn::LoadU(d, pad[0]), hn::LoadU(d, pad[1]), hn::LoadU(d, pad[2]),
+                                       hn::LoadU(d, pad[3]), hn::LoadU(d, pad[4]), hn::LoadU(d, pad[5]), &cos, g);
   hn::StoreU(value, d, out[0]);
   hn::StoreU(cos, d, out[1]);
   if constexpr (kGradient) {
@@ -78,7 +79,8 @@ void WithMasking(const DirectionArrays& in, const double* uniform, double* specu
   }
 }
 
-void GgxLobeArrays(const DirectionArrays& in, const double* uniform, int masking, double* specular, double* cos_d, double* gradient) {
+void GgxLobeArrays(const DirectionArrays& in, const double* uniform, int masking, double* specular, double* cos_d,
+                   double* gradient) {
   switch (static_cast<Masking>(masking)) {
     case Masking::kSmithSeparable:
       return WithMasking<GgxMasking::kClamped>(in, uniform, specular, cos_d, gradient);
@@ -118,14 +120,15 @@ HWY_EXPORT(GgxLobeArrays);
 
 }  // namespace
 
-void GgxLobe(const DirectionArrays& directions, const SlopeCoordinates& shape, Masking masking, double* specular, double* cos_d,
-             double* gradient) {
+void GgxLobe(const DirectionArrays& directions, const SlopeCoordinates& shape, Masking masking, double* specular,
+             double* cos_d, double* gradient) {
   const scalar::GgxLobeUniform<double> p = Uniform(shape);
   const double uniform[8] = {p.slope_x, p.slope_y, p.a, p.b, p.c, p.inv_a, p.inv_c, p.quarter_inv_pi_det};
   HWY_DYNAMIC_DISPATCH(GgxLobeArrays)(directions, uniform, static_cast<int>(masking), specular, cos_d, gradient);
 }
 
-double GgxLobe(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Masking masking, double* cos_d, double gradient[5]) {
+double GgxLobe(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Masking masking, double* cos_d,
+               double gradient[5]) {
   using scalar::GgxMasking;
   const scalar::GgxLobeUniform<double> p = Uniform(shape);
   const auto evaluate = [&]<bool kGradient, GgxMasking kMasking>() {
@@ -134,7 +137,8 @@ double GgxLobe(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Ma
   const bool g = gradient != nullptr;
   switch (masking) {
     case Masking::kSmithUnclamped:
-      return g ? evaluate.operator()<true, GgxMasking::kUnclamped>() : evaluate.operator()<false, GgxMasking::kUnclamped>();
+      return g ? evaluate.operator()<true, GgxMasking::kUnclamped>()
+               : evaluate.operator()<false, GgxMasking::kUnclamped>();
     case Masking::kSmithHeight:
       return g ? evaluate.operator()<true, GgxMasking::kHeight>() : evaluate.operator()<false, GgxMasking::kHeight>();
     case Masking::kSmithSeparable:

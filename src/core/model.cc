@@ -11,13 +11,15 @@ struct ShapeRow {
   double low, high;
   const char* description;
 };
-// The ranges: below alpha = 1e-4 a lobe is a mirror for every instrument; above 1 the axis called "1" is no longer the longest.
+// The ranges: below alpha = 1e-4 a lobe is a mirror for every instrument; above 1 the axis called "1" is no longer the
+// longest.
 constexpr ShapeRow kShape[] = {
     {"alpha_x", "1", 1e-4, 1, "roughness along the first axis of the ellipsoid"},
     {"alpha_y", "1", 1e-4, 1, "roughness along the second axis"},
     {"theta_x", "deg", -kPi / 2, kPi / 2, "tilt of the lobe about x (positive leans it to +y)"},
     {"theta_y", "deg", -kPi / 2, kPi / 2, "tilt of the lobe about y (positive leans it to -x)"},
-    {"theta_z", "deg", -kPi / 2, kPi / 2, "rotation of the axes about the normal (positive turns them clockwise seen from +z)"},
+    {"theta_z", "deg", -kPi / 2, kPi / 2,
+     "rotation of the axes about the normal (positive turns them clockwise seen from +z)"},
 };
 constexpr bool kShapeFree[][5] = {
     {true, false, false, false, false},  // kGgx
@@ -36,18 +38,20 @@ std::vector<Parameter> Parameters(const Model& model) {
       const ShapeRow& row = kShape[i];
       const bool is_angle = std::string_view(row.unit) == "deg";
       const std::string name = prefix + row.name;
-      parameters.push_back({name, name + (is_angle ? "_deg" : ""), row.unit, row.low, row.high, ParameterGroup::kShape, false,
-                            kShapeFree[static_cast<int>(model.lobes[lobe].ndf)][i], row.description});
+      parameters.push_back({name, name + (is_angle ? "_deg" : ""), row.unit, row.low, row.high, ParameterGroup::kShape,
+                            false, kShapeFree[static_cast<int>(model.lobes[lobe].ndf)][i], row.description});
     }
     if (model.lobes[lobe].fresnel == Fresnel::kSchlick) {
-      parameters.push_back({prefix + "f0", prefix + "f0", "1", 0, 1, ParameterGroup::kFresnel, true, true, "reflectance at normal incidence"});
+      parameters.push_back({prefix + "f0", prefix + "f0", "1", 0, 1, ParameterGroup::kFresnel, true, true,
+                            "reflectance at normal incidence"});
     } else {
       parameters.push_back({prefix + "scale", prefix + "scale", "1", 0, 1e6, ParameterGroup::kFresnel, true, true,
                             "factor of the lobe in place of a Fresnel term"});
     }
   }
   if (model.diffuse == Diffuse::kLambert) {
-    parameters.push_back({"diffuse", "diffuse", "1", 0, 10, ParameterGroup::kDiffuse, true, true, "albedo of the Lambertian part, pi f_r"});
+    parameters.push_back({"diffuse", "diffuse", "1", 0, 10, ParameterGroup::kDiffuse, true, true,
+                          "albedo of the Lambertian part, pi f_r"});
   }
   return parameters;
 }

@@ -1,5 +1,5 @@
-// What can be fitted: a reflectance model as a sum of specular lobes and a diffuse part, and the one table of its parameters, from
-// which recipes, bounds, JSON documents, help and report columns take names, units and ranges.
+// What can be fitted: a reflectance model as a sum of specular lobes and a diffuse part, and the one table of its
+// parameters, from which recipes, bounds, JSON documents, help and report columns take names, units and ranges.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 namespace lobefit {
 
 enum class Ndf {
-  kGgx,             // isotropic GGX: alpha_y tied to alpha_x, no rotation
-  kGgxTilted,       // isotropic ellipsoid whose axis may tilt within one plane: alpha_y tied, theta_y free, theta_z fixed
+  kGgx,        // isotropic GGX: alpha_y tied to alpha_x, no rotation
+  kGgxTilted,  // isotropic ellipsoid whose axis may tilt within one plane: alpha_y tied, theta_y free, theta_z fixed
   kGgxAnisotropic,  // alpha_x, alpha_y, theta_z; axis along the normal
   kEllipsoid,       // all five parameters [Walter eq 1]
 };
@@ -54,13 +54,15 @@ struct Parameter {
   std::string description;  // one line for people
 };
 
-// The parameters in their fixed order: for each lobe alpha_x, alpha_y, theta_x, theta_y, theta_z, then f0 or scale; last the diffuse albedo.
+// The parameters in their fixed order: for each lobe alpha_x, alpha_y, theta_x, theta_y, theta_z, then f0 or scale;
+// last the diffuse albedo.
 std::vector<Parameter> Parameters(const Model& model);
 
 // inside value = outside value * factor.
 double InsideFactor(const Parameter& parameter);
 
-// Values of the parameters in the order of Parameters(model): one number each, or one a channel where per_channel; inside units.
+// Values of the parameters in the order of Parameters(model): one number each, or one a channel where per_channel;
+// inside units.
 using ParameterValues = std::vector<std::vector<double>>;
 
 // Words for the choices, as recipes, documents and help spell them.

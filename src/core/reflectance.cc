@@ -23,7 +23,8 @@ Reflectance::Reflectance(const Model& model, const ParameterValues& values, std:
   }
   std::size_t at = 0;
   for (std::size_t lobe = 0; lobe < model.lobes.size(); ++lobe) {
-    const Ellipsoid ellipsoid = {values[at][0], values[at + 1][0], values[at + 2][0], values[at + 3][0], values[at + 4][0]};
+    const Ellipsoid ellipsoid = {values[at][0], values[at + 1][0], values[at + 2][0], values[at + 3][0],
+                                 values[at + 4][0]};
     shapes_.push_back(SlopeCoordinatesFromEllipsoid(ellipsoid));
     amplitude_.push_back(values[at + 5]);
     at += 6;
@@ -53,7 +54,8 @@ void Reflectance::Evaluate(const Vec3& wi, const Vec3& wo, double* f_r) const {
 
 void Reflectance::Evaluate(const DirectionArrays& directions, std::vector<std::vector<double>>* f_r) const {
   const std::size_t count = directions.count, lobes = shapes_.size();
-  std::vector<std::vector<double>> specular(lobes, std::vector<double>(count)), cos_d(lobes, std::vector<double>(count));
+  std::vector<std::vector<double>> specular(lobes, std::vector<double>(count)),
+      cos_d(lobes, std::vector<double>(count));
   for (std::size_t lobe = 0; lobe < lobes; ++lobe) {
     GgxLobe(directions, shapes_[lobe], model_.lobes[lobe].masking, specular[lobe].data(), cos_d[lobe].data(), nullptr);
   }

@@ -12,8 +12,8 @@ namespace lobefit {
 // f_r = diffuse / pi + sum over lobes of F D G2 / (4 cos_theta_i cos_theta_o) [Walter eq 4-6].
 class Reflectance {
  public:
-  // `values` in the order of Parameters(model), inside units (radians). Throws std::invalid_argument where their number or the number
-  // of channels does not fit.
+  // `values` in the order of Parameters(model), inside units (radians). Throws std::invalid_argument where their number
+  // or the number of channels does not fit.
   Reflectance(const Model& model, const ParameterValues& values, std::size_t channels);
 
   std::size_t channels() const { return channels_; }

@@ -1,4 +1,5 @@
-// *.material.json: writing, and strict reading with the place of what is wrong. The schema is src/material/material.schema.json.
+// *.material.json: writing, and strict reading with the place of what is wrong. The schema is
+// src/material/material.schema.json.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// The result of a fit: parameters with their intervals, how good it is, and where it came from. It is what *.material.json holds and what
-// reports and exporters take.
+// The result of a fit: parameters with their intervals, how good it is, and where it came from. It is what
+// *.material.json holds and what reports and exporters take.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ struct FittedParameter {
   std::vector<double> values;
   // Standard error, robust to noise that differs from sample to sample. NaN: fixed, tied or not determined.
   std::vector<double> standard_error;
-  // Standard error where the samples of one incident direction are taken as dependent (sandwich, clustered by incidence). NaN as above,
-  // or with fewer than two incidences.
+  // Standard error where the samples of one incident direction are taken as dependent (sandwich, clustered by
+  // incidence). NaN as above, or with fewer than two incidences.
   std::vector<double> standard_error_clustered;
   bool free = true;
   bool at_bound = false;
@@ -56,7 +56,8 @@ struct Material {
   std::vector<double> wavelengths_nm;
   std::vector<FittedParameter> parameters;  // in the order of Parameters(model)
 
-  // Names of the free entries (JSON names, per-channel ones with "[R]"), outside units, and their covariance, row-major.
+  // Names of the free entries (JSON names, per-channel ones with "[R]"), outside units, and their covariance,
+  // row-major.
   std::vector<std::string> covariance_names;
   std::vector<double> covariance;
   // Slope-space form of each lobe: slope_x, slope_y, alpha_x, alpha_y (standard widths in slope), r.

@@ -1,0 +1,74 @@
+#include "lobefit/recipe/recipe.h"
+
+#include "lobefit/math/vec.h"
+
+namespace lobefit {
+
+const std::vector<Choice<Metric>>& MetricChoices() {
+  static const std::vector<Choice<Metric>> choices = {
+      {Metric::kLog, "log", "ln(1 + f cos_theta_i), differences"},
+      {Metric::kCubeRoot, "cube-root", "cube root of f cos_theta_i, differences"},
+      {Metric::kRelative, "relative", "relative differences of f"},
+      {Metric::kCosineL2, "cosine-l2", "differences of f cos_theta_i"},
+      {Metric::kNgan, "ngan", "differences of f cos_theta_i, weighted by sin_theta_i sin_theta_o"},
+      {Metric::kLowLog, "low-log", "ln(1 + f cos_theta_i), differences weighted by sin_theta_i"},
+  };
+  return choices;
+}
+
+const std::vector<Choice<Weighting>>& WeightingChoices() {
+  static const std::vector<Choice<Weighting>> choices = {
+      {Weighting::kCells, "cells", "every sample counts the same"},
+      {Weighting::kSolidAngle, "solid-angle", "a sample counts by the solid angle of its cell"},
+  };
+  return choices;
+}
+
+const std::vector<Choice<Loss>>& LossChoices() {
+  static const std::vector<Choice<Loss>> choices = {
+      {Loss::kNone, "none", "squares"},
+      {Loss::kHuber, "huber", "linear beyond the scale"},
+      {Loss::kCauchy, "cauchy", "logarithmic beyond the scale"},
+      {Loss::kTukey, "tukey", "constant beyond the scale"},
+  };
+  return choices;
+}
+
+bool Recipe::IsFree(std::size_t index) const {
+  return Parameters(model)[index].free && !parameters[index].fixed.has_value();
+}
+
+Recipe DefaultRecipe(const Model& model, const std::string& name) {
+  Recipe recipe;
+  recipe.name = name;
+  recipe.model = model;
+  recipe.parameters.resize(Parameters(model).size());
+  return recipe;
+}
+
+Recipe AutomaticRecipe(const MeasurementTraits& traits) {
+  Model model;
+  model.lobes.resize(1);
+  std::string name, reason;
+  if (traits.isotropic) {
+    model.lobes[0].ndf = Ndf::kGgx;
+    name = "ggx";
+    reason = "the format is isotropic by construction, so one alpha and no rotation can be determined";
+  } else if (traits.in_plane) {
+    model.lobes[0].ndf = Ndf::kGgxTilted;
+    name = "ggx-tilted";
+    reason =
+        "all samples lie in one plane, so nothing that lives out of it can be determined: one alpha, and a tilt within "
+        "the plane";
+  } else {
+    model.lobes[0].ndf = Ndf::kEllipsoid;
+    name = "ellipsoid";
+    reason = "the samples leave the plane of incidence, so all five parameters of the ellipsoid can be determined";
+  }
+  Recipe recipe = DefaultRecipe(model, name);
+  recipe.reason = reason;
+  recipe.plane_azimuth = traits.plane_azimuth;
+  return recipe;
+}
+
+}  // namespace lobefit

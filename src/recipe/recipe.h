@@ -1,0 +1,81 @@
+// What to fit: model, free parameters, starts, bounds, metric, loss, angle limit. How to solve it is not in a recipe.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lobefit/core/model.h"
+
+namespace lobefit {
+
+// What the fit minimises: the sum of squared residuals, with f the model's and m the measured f_r of a sample and
+// channel.
+enum class Metric {
+  kLog,       // ln(1 + f cos_theta_i) - ln(1 + m cos_theta_i)
+  kCubeRoot,  // cbrt(f cos_theta_i) - cbrt(m cos_theta_i)
+  kRelative,  // (f - m) / m; m > 0
+  kCosineL2,  // (f - m) cos_theta_i
+  kNgan,      // (f - m) cos_theta_i, weight sin_theta_i sin_theta_o [Ngan 2005, as in common use]
+  kLowLog,    // ln(1 + f cos_theta_i) - ln(1 + m cos_theta_i), weight sin_theta_i [Low 2012, as in common use]
+};
+
+enum class Weighting { kCells, kSolidAngle };
+
+// Applied to the squared residual of a sample over all its channels; `scale` is in units of the residual.
+enum class Loss { kNone, kHuber, kCauchy, kTukey };
+
+const std::vector<Choice<Metric>>& MetricChoices();
+const std::vector<Choice<Weighting>>& WeightingChoices();
+const std::vector<Choice<Loss>>& LossChoices();
+
+// What a recipe says of one parameter; inside units. Bounds default to the range in the parameter table.
+struct ParameterRecipe {
+  std::optional<double> start;
+  std::optional<double> fixed;
+  std::optional<double> low, high;
+  bool shared = false;  // one value for all channels
+};
+
+struct Recipe {
+  std::string name;
+  std::string reason;  // why it was chosen, where it was chosen automatically
+  Model model;
+  std::vector<ParameterRecipe> parameters;  // in the order of Parameters(model)
+  Metric metric = Metric::kLog;
+  Weighting weighting = Weighting::kCells;
+  Loss loss = Loss::kNone;
+  double loss_scale = 0.1;
+  double theta_max = 80 * 3.14159265358979323846 / 180;  // radians
+  // Azimuth of the plane of an in-plane measurement, for ggx-tilted.
+  double plane_azimuth = 0;
+
+  bool IsFree(std::size_t index) const;
+};
+
+// A recipe for `model` with every choice at its default.
+Recipe DefaultRecipe(const Model& model, const std::string& name);
+
+// Reads fits/*.toml; its grammar is in fits/README.md. Throws InputError with file and line: unknown key (with a
+// suggestion), wrong type, unknown choice (with the allowed ones), a bound that excludes its start.
+Recipe ReadRecipe(const std::filesystem::path& path);
+Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name);
+
+// The recipe as TOML that ParseRecipe reads back.
+std::string ToToml(const Recipe& recipe);
+
+// What an automatic choice needs to know of a measurement.
+struct MeasurementTraits {
+  bool isotropic = false;  // by construction of the format
+  bool in_plane = false;   // all samples in one plane
+  double plane_azimuth = 0;
+  std::size_t incidences = 0;
+  std::size_t samples = 0;
+};
+
+// The richest default model that the measurement can determine; `reason` says what was chosen and why.
+Recipe AutomaticRecipe(const MeasurementTraits& traits);
+
+}  // namespace lobefit

@@ -1,0 +1,228 @@
+#include <cmath>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#define TOML_EXCEPTIONS 1
+#include <toml++/toml.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/text.h"
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+namespace {
+
+// Where a value stands, for messages.
+struct Place {
+  std::string file;
+
+  [[noreturn]] void Fail(const toml::source_region& at, const std::string& message) const {
+    throw InputError(fmt::format("{}:{}: {}", file, at.begin.line, message));
+  }
+};
+
+void CheckKeys(const toml::table& table, const std::vector<std::string>& allowed, const std::string& where,
+               const Place& place) {
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    bool known = false;
+    for (const std::string& candidate : allowed) known = known || candidate == name;
+    if (!known) {
+      place.Fail(key.source(), fmt::format("unknown key '{}' {}{}; allowed: {}", name, where, DidYouMean(name, allowed),
+                                           Join(allowed)));
+    }
+  }
+}
+
+std::optional<double> Number(const toml::table& table, const char* key, const Place& place) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return std::nullopt;
+  const std::optional<double> value = node->value<double>();
+  if (!value || !node->is_number() || !std::isfinite(*value)) {
+    place.Fail(node->source(), fmt::format("'{}' must be a finite number", key));
+  }
+  return value;
+}
+
+template <class Enum>
+void ReadChoice(const toml::table& table, const char* key, const std::vector<Choice<Enum>>& choices, const Place& place,
+                Enum* value) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return;
+  const std::optional<std::string> text = node->value<std::string>();
+  const Choice<Enum>* choice = text && node->is_string() ? Find(choices, *text) : nullptr;
+  if (choice == nullptr) {
+    const std::vector<std::string> names = Names(choices);
+    place.Fail(node->source(), fmt::format("{} = '{}' is unknown{}; allowed: {}", key, text.value_or("?"),
+                                           DidYouMean(text.value_or(""), names), Join(names)));
+  }
+  *value = choice->value;
+}
+
+const toml::table* Table(const toml::table& table, const char* key, const Place& place) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return nullptr;
+  if (!node->is_table()) place.Fail(node->source(), fmt::format("'{}' must be a table", key));
+  return node->as_table();
+}
+
+// One parameter: { start, fixed, bounds = [low, high], shared }.
+ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter, const Place& place) {
+  const std::string& name = parameter.json_name;
+  if (!node.is_table()) {
+    place.Fail(node.source(),
+               fmt::format("'{}' must be a table such as {{ start = 0.2 }}; keys: start, fixed, bounds, shared", name));
+  }
+  const toml::table& table = *node.as_table();
+  CheckKeys(table, {"start", "fixed", "bounds", "shared"}, "of parameter '" + name + "'", place);
+  const double factor = InsideFactor(parameter);
+  const auto inside = [&](std::optional<double> value) {
+    return value ? std::optional<double>(*value * factor) : value;
+  };
+  ParameterRecipe recipe;
+  recipe.start = inside(Number(table, "start", place));
+  recipe.fixed = inside(Number(table, "fixed", place));
+  if (const toml::node* bounds = table.get("bounds")) {
+    const toml::array* array = bounds->as_array();
+    const bool two_numbers =
+        array != nullptr && array->size() == 2 && array->get(0)->is_number() && array->get(1)->is_number();
+    if (!two_numbers)
+      place.Fail(bounds->source(), fmt::format("bounds of '{}' must be two numbers, [low, high]", name));
+    recipe.low = *array->get(0)->value<double>() * factor;
+    recipe.high = *array->get(1)->value<double>() * factor;
+    if (!(*recipe.low < *recipe.high))
+      place.Fail(bounds->source(), fmt::format("bounds of '{}': the first must be below the second", name));
+    if (*recipe.low < parameter.low - 1e-12 || *recipe.high > parameter.high + 1e-12) {
+      place.Fail(bounds->source(), fmt::format("bounds of '{}' leave its range [{:g}, {:g}]", name,
+                                               parameter.low / factor, parameter.high / factor));
+    }
+  }
+  if (const toml::node* shared = table.get("shared")) {
+    if (!shared->is_boolean()) place.Fail(shared->source(), "'shared' must be true or false");
+    recipe.shared = *shared->value<bool>();
+    if (recipe.shared && !parameter.per_channel)
+      place.Fail(shared->source(), fmt::format("'{}' has one value for all channels anyway", name));
+  }
+  if (recipe.fixed && (recipe.start || recipe.low))
+    place.Fail(node.source(), fmt::format("'{}' is fixed: start and bounds do not apply", name));
+  if (!parameter.free && (recipe.start || recipe.low || recipe.shared)) {
+    place.Fail(node.source(), fmt::format("'{}' is not a free parameter of this ndf; it can only be fixed", name));
+  }
+  for (const std::optional<double>& value : {recipe.start, recipe.fixed}) {
+    if (!value) continue;
+    const double low = recipe.low.value_or(parameter.low), high = recipe.high.value_or(parameter.high);
+    if (*value < low - 1e-12 || *value > high + 1e-12) {
+      place.Fail(node.source(), fmt::format("'{}' = {:g} lies outside its bounds [{:g}, {:g}]", name, *value / factor,
+                                            low / factor, high / factor));
+    }
+  }
+  return recipe;
+}
+
+Lobe ReadLobe(const toml::table& table, const Place& place) {
+  CheckKeys(table, {"ndf", "masking", "fresnel"}, "of a lobe", place);
+  Lobe lobe;
+  ReadChoice(table, "ndf", NdfChoices(), place, &lobe.ndf);
+  ReadChoice(table, "masking", MaskingChoices(), place, &lobe.masking);
+  ReadChoice(table, "fresnel", FresnelChoices(), place, &lobe.fresnel);
+  return lobe;
+}
+
+void ReadLoss(const toml::table& root, const Place& place, Recipe* recipe) {
+  const toml::table* loss = Table(root, "loss", place);
+  if (loss == nullptr) return;
+  CheckKeys(*loss, {"kind", "scale"}, "of the loss", place);
+  ReadChoice(*loss, "kind", LossChoices(), place, &recipe->loss);
+  if (const std::optional<double> scale = Number(*loss, "scale", place)) {
+    if (*scale <= 0) place.Fail(loss->source(), "the scale of the loss must be above 0");
+    recipe->loss_scale = *scale;
+  }
+}
+
+}  // namespace
+
+Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
+  const Place place{file_name};
+  toml::table root;
+  try {
+    root = toml::parse(toml_text, file_name);
+  } catch (const toml::parse_error& error) {
+    place.Fail(error.source(), std::string(error.description()));
+  }
+  CheckKeys(root, {"name", "metric", "weighting", "loss", "theta_max_deg", "diffuse", "lobe", "parameters"},
+            "of a recipe", place);
+  Model model;
+  if (const toml::node* lobes = root.get("lobe")) {
+    const toml::array* array = lobes->as_array();
+    if (array == nullptr || !array->is_array_of_tables() || array->size() > 3) {
+      place.Fail(lobes->source(), "lobes are written as [[lobe]], at most three");
+    }
+    for (const toml::node& lobe : *array) model.lobes.push_back(ReadLobe(*lobe.as_table(), place));
+  }
+  if (model.lobes.empty()) place.Fail(root.source(), "a recipe needs at least one [[lobe]]");
+  ReadChoice(root, "diffuse", DiffuseChoices(), place, &model.diffuse);
+  Recipe recipe = DefaultRecipe(model, std::filesystem::path(file_name).stem().string());
+  if (const toml::node* name = root.get("name")) {
+    if (!name->is_string()) place.Fail(name->source(), "'name' must be a string");
+    recipe.name = *name->value<std::string>();
+  }
+  ReadChoice(root, "metric", MetricChoices(), place, &recipe.metric);
+  ReadChoice(root, "weighting", WeightingChoices(), place, &recipe.weighting);
+  ReadLoss(root, place, &recipe);
+  if (const std::optional<double> limit = Number(root, "theta_max_deg", place)) {
+    if (*limit <= 0 || *limit > 90)
+      place.Fail(root.get("theta_max_deg")->source(), "theta_max_deg must lie in (0, 90]");
+    recipe.theta_max = *limit * kPi / 180;
+  }
+  if (const toml::table* table = Table(root, "parameters", place)) {
+    const std::vector<Parameter> parameters = Parameters(model);
+    std::vector<std::string> names;
+    for (const Parameter& parameter : parameters) names.push_back(parameter.json_name);
+    CheckKeys(*table, names, "of this model's parameters", place);
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      if (const toml::node* node = table->get(names[i]))
+        recipe.parameters[i] = ReadParameter(*node, parameters[i], place);
+    }
+  }
+  return recipe;
+}
+
+Recipe ReadRecipe(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  return ParseRecipe(std::string(file.bytes()), path.string());
+}
+
+std::string ToToml(const Recipe& recipe) {
+  std::string text =
+      fmt::format("name = \"{}\"\nmetric = \"{}\"\nweighting = \"{}\"\ntheta_max_deg = {}\ndiffuse = \"{}\"\n",
+                  recipe.name, NameOf(MetricChoices(), recipe.metric), NameOf(WeightingChoices(), recipe.weighting),
+                  FormatDouble(RadiansToDegrees(recipe.theta_max)), NameOf(DiffuseChoices(), recipe.model.diffuse));
+  if (recipe.loss != Loss::kNone) {
+    text += fmt::format("loss = {{ kind = \"{}\", scale = {} }}\n", NameOf(LossChoices(), recipe.loss),
+                        FormatDouble(recipe.loss_scale));
+  }
+  for (const Lobe& lobe : recipe.model.lobes) {
+    text +=
+        fmt::format("\n[[lobe]]\nndf = \"{}\"\nmasking = \"{}\"\nfresnel = \"{}\"\n", NameOf(NdfChoices(), lobe.ndf),
+                    NameOf(MaskingChoices(), lobe.masking), NameOf(FresnelChoices(), lobe.fresnel));
+  }
+  text += "\n[parameters]\n";
+  const std::vector<Parameter> parameters = Parameters(recipe.model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const ParameterRecipe& parameter = recipe.parameters[i];
+    const double factor = InsideFactor(parameters[i]);
+    std::vector<std::string> parts;
+    if (parameter.start) parts.push_back("start = " + FormatDouble(*parameter.start / factor));
+    if (parameter.fixed) parts.push_back("fixed = " + FormatDouble(*parameter.fixed / factor));
+    if (parameter.low)
+      parts.push_back(fmt::format("bounds = [{}, {}]", FormatDouble(*parameter.low / factor),
+                                  FormatDouble(*parameter.high / factor)));
+    if (parameter.shared) parts.emplace_back("shared = true");
+    if (!parts.empty()) text += fmt::format("\"{}\" = {{ {} }}\n", parameters[i].json_name, Join(parts));
+  }
+  return text;
+}
+
+}  // namespace lobefit
