@@ -1,0 +1,8 @@
+// The version of the library and program, from the project's CMakeLists.txt.
+#pragma once
+
+namespace lobefit {
+
+const char* Version();
+
+}  // namespace lobefit

@@ -1,0 +1,308 @@
+#include "lobefit/material/json.h"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/version.h"
+
+namespace lobefit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+// A scalar for one entry that is not per channel, else an array; values times 1 / factor.
+Json Numbers(const std::vector<double>& values, bool per_channel, double factor) {
+  if (values.empty()) return nullptr;
+  if (!per_channel) return Number(values[0] / factor);
+  Json array = Json::array();
+  for (const double value : values) array.push_back(Number(value / factor));
+  return array;
+}
+
+Json ModelToJson(const Model& model) {
+  Json lobes = Json::array();
+  for (const Lobe& lobe : model.lobes) {
+    lobes.push_back({{"ndf", NameOf(NdfChoices(), lobe.ndf)},
+                     {"masking", NameOf(MaskingChoices(), lobe.masking)},
+                     {"fresnel", NameOf(FresnelChoices(), lobe.fresnel)}});
+  }
+  return {{"lobes", lobes}, {"diffuse", NameOf(DiffuseChoices(), model.diffuse)}};
+}
+
+Json ParametersToJson(const Material& material) {
+  Json object = Json::object();
+  const std::vector<Parameter> parameters = Parameters(material.model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& parameter = parameters[i];
+    const FittedParameter& fitted = material.parameters[i];
+    const double factor = InsideFactor(parameter);
+    object[parameter.json_name] = {
+        {"value", Numbers(fitted.values, parameter.per_channel, factor)},
+        {"stderr", Numbers(fitted.standard_error, parameter.per_channel, factor)},
+        {"stderr_clustered", Numbers(fitted.standard_error_clustered, parameter.per_channel, factor)},
+        {"unit", parameter.unit},
+        {"free", fitted.free},
+        {"at_bound", fitted.at_bound}};
+  }
+  return object;
+}
+
+Json SlopeSpaceToJson(const Material& material) {
+  Json lobes = Json::array();
+  for (const std::vector<double>& s : material.slope_space) {
+    lobes.push_back(
+        {{"slope_x", s[0]}, {"slope_y", s[1]}, {"slope_alpha_x", s[2]}, {"slope_alpha_y", s[3]}, {"slope_r", s[4]}});
+  }
+  return lobes;
+}
+
+Json CovarianceToJson(const Material& material) {
+  const std::size_t n = material.covariance_names.size();
+  Json matrix = Json::array();
+  for (std::size_t i = 0; i < n; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < n; ++j) row.push_back(Number(material.covariance[i * n + j]));
+    matrix.push_back(row);
+  }
+  return {{"names", material.covariance_names}, {"matrix", matrix}};
+}
+
+Json QualityToJson(const Material& material) {
+  Json errors = Json::object();
+  for (const MetricError& error : material.errors) errors[error.metric] = Number(error.rms);
+  return {{"samples_read", material.samples_read},
+          {"samples_used", material.samples_used},
+          {"set_aside", material.set_aside},
+          {"cost", Number(material.cost)},
+          {"errors", errors},
+          {"remarks", material.remarks}};
+}
+
+Json MinimaToJson(const Material& material) {
+  Json minima = Json::array();
+  for (const Minimum& minimum : material.minima) {
+    Json parameters = Json::object();
+    for (const auto& [name, value] : minimum.parameters) parameters[name] = Number(value);
+    minima.push_back({{"cost", Number(minimum.cost)}, {"starts", minimum.starts}, {"parameters", parameters}});
+  }
+  return minima;
+}
+
+// Reading: every access names the member in its error.
+class Reader {
+ public:
+  Reader(const Json& json, std::string file) : json_(json), file_(std::move(file)) {}
+
+  [[noreturn]] void Fail(const std::string& message) const {
+    throw InputError(fmt::format("{}: {}; write the file with `lobefit fit`", file_, message));
+  }
+  const Json& Member(const Json& object, const char* name) const {
+    if (!object.is_object() || !object.contains(name)) Fail(fmt::format("has no member '{}'", name));
+    return object.at(name);
+  }
+  template <class T>
+  T Get(const Json& object, const char* name) const {
+    try {
+      return Member(object, name).get<T>();
+    } catch (const Json::exception&) {
+      Fail(fmt::format("member '{}' has the wrong type", name));
+    }
+  }
+  template <class Enum>
+  Enum GetChoice(const Json& object, const char* name, const std::vector<Choice<Enum>>& choices) const {
+    const std::string text = Get<std::string>(object, name);
+    const Choice<Enum>* choice = Find(choices, text);
+    if (choice == nullptr) Fail(fmt::format("{} '{}' is not known to this version ({})", name, text, Version()));
+    return choice->value;
+  }
+  std::vector<double> GetNumbers(const Json& object, const char* name, double factor) const {
+    const Json& member = Member(object, name);
+    std::vector<double> numbers;
+    for (const Json& entry : member.is_array() ? member : Json::array({member})) {
+      if (!entry.is_number() && !entry.is_null())
+        Fail(fmt::format("member '{}' holds something that is not a number", name));
+      numbers.push_back(entry.is_null() ? std::numeric_limits<double>::quiet_NaN() : entry.get<double>() * factor);
+    }
+    return numbers;
+  }
+  const Json& root() const { return json_; }
+
+ private:
+  const Json& json_;
+  std::string file_;
+};
+
+Model ReadModel(const Reader& reader) {
+  const Json& json = reader.Member(reader.root(), "model");
+  Model model;
+  for (const Json& lobe : reader.Member(json, "lobes")) {
+    model.lobes.push_back({reader.GetChoice(lobe, "ndf", NdfChoices()),
+                           reader.GetChoice(lobe, "masking", MaskingChoices()),
+                           reader.GetChoice(lobe, "fresnel", FresnelChoices())});
+  }
+  model.diffuse = reader.GetChoice(json, "diffuse", DiffuseChoices());
+  if (model.lobes.empty()) reader.Fail("model has no lobe");
+  return model;
+}
+
+void ReadParameters(const Reader& reader, Material* material) {
+  const Json& json = reader.Member(reader.root(), "parameters");
+  for (const Parameter& parameter : Parameters(material->model)) {
+    const Json& entry = reader.Member(json, parameter.json_name.c_str());
+    const double factor = InsideFactor(parameter);
+    FittedParameter fitted;
+    fitted.values = reader.GetNumbers(entry, "value", factor);
+    fitted.standard_error = reader.GetNumbers(entry, "stderr", factor);
+    fitted.standard_error_clustered = reader.GetNumbers(entry, "stderr_clustered", factor);
+    fitted.free = reader.Get<bool>(entry, "free");
+    fitted.at_bound = reader.Get<bool>(entry, "at_bound");
+    const std::size_t expected = parameter.per_channel ? material->channels.size() : 1;
+    if (fitted.values.size() != expected) {
+      reader.Fail(fmt::format("parameter '{}' has {} values, {} belong there", parameter.json_name,
+                              fitted.values.size(), expected));
+    }
+    for (const double value : fitted.values) {
+      if (!std::isfinite(value)) reader.Fail(fmt::format("parameter '{}' has no finite value", parameter.json_name));
+    }
+    material->parameters.push_back(fitted);
+  }
+}
+
+void ReadRest(const Reader& reader, Material* material) {
+  const Json& root = reader.root();
+  for (const Json& lobe : reader.Member(root, "slope_space")) {
+    material->slope_space.push_back({reader.Get<double>(lobe, "slope_x"), reader.Get<double>(lobe, "slope_y"),
+                                     reader.Get<double>(lobe, "slope_alpha_x"),
+                                     reader.Get<double>(lobe, "slope_alpha_y"), reader.Get<double>(lobe, "slope_r")});
+  }
+  const Json& covariance = reader.Member(root, "covariance");
+  material->covariance_names = reader.Get<std::vector<std::string>>(covariance, "names");
+  for (const Json& row : reader.Member(covariance, "matrix")) {
+    for (const Json& entry : row) {
+      material->covariance.push_back(entry.is_number() ? entry.get<double>()
+                                                       : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  material->degenerate = reader.Get<std::vector<std::string>>(root, "degenerate");
+  const Json& quality = reader.Member(root, "quality");
+  material->samples_read = reader.Get<std::size_t>(quality, "samples_read");
+  material->samples_used = reader.Get<std::size_t>(quality, "samples_used");
+  material->set_aside = reader.Get<std::map<std::string, std::size_t>>(quality, "set_aside");
+  material->cost = reader.Get<double>(quality, "cost");
+  material->remarks = reader.Get<std::vector<std::string>>(quality, "remarks");
+  for (const auto& [metric, rms] : reader.Member(quality, "errors").items()) {
+    material->errors.push_back(
+        {metric, rms.is_number() ? rms.get<double>() : std::numeric_limits<double>::quiet_NaN()});
+  }
+  for (const Json& minimum : reader.Member(root, "minima")) {
+    Minimum read;
+    read.cost = reader.Get<double>(minimum, "cost");
+    read.starts = reader.Get<std::size_t>(minimum, "starts");
+    for (const auto& [name, value] : reader.Member(minimum, "parameters").items())
+      read.parameters.emplace_back(name, value.get<double>());
+    material->minima.push_back(read);
+  }
+  const Json& termination = reader.Member(root, "termination");
+  material->termination = {reader.Get<bool>(termination, "converged"), reader.Get<bool>(termination, "determined"),
+                           reader.Get<std::string>(termination, "message"), reader.Get<int>(termination, "iterations")};
+  material->timings_s = reader.Get<std::map<std::string, double>>(root, "timings_s");
+  const Json& source = reader.Member(root, "source");
+  material->source = {reader.Get<std::string>(source, "file"), reader.Get<std::string>(source, "sha256"),
+                      reader.Get<std::string>(source, "format"),
+                      reader.Get<std::map<std::string, std::string>>(source, "conventions")};
+  const Json& recipe = reader.Member(root, "recipe");
+  material->recipe_name = reader.Get<std::string>(recipe, "name");
+  material->recipe_reason = reader.Get<std::string>(recipe, "reason");
+  material->metric = reader.Get<std::string>(recipe, "metric");
+  material->weighting = reader.Get<std::string>(recipe, "weighting");
+  material->loss = reader.Get<std::string>(recipe, "loss");
+  material->theta_max_deg = reader.Get<double>(recipe, "theta_max_deg");
+  material->command = reader.Get<std::string>(root, "command");
+}
+
+}  // namespace
+
+std::string ToJson(const Material& material) {
+  const Json json = {
+      {"format", "lobefit material"},
+      {"format_version", "1.0"},
+      {"version", Version()},
+      {"command", material.command},
+      {"model", ModelToJson(material.model)},
+      {"channels", material.channels},
+      {"wavelengths_nm", material.wavelengths_nm},
+      {"parameters", ParametersToJson(material)},
+      {"slope_space", SlopeSpaceToJson(material)},
+      {"covariance", CovarianceToJson(material)},
+      {"degenerate", material.degenerate},
+      {"quality", QualityToJson(material)},
+      {"minima", MinimaToJson(material)},
+      {"termination",
+       {{"converged", material.termination.converged},
+        {"determined", material.termination.determined},
+        {"message", material.termination.message},
+        {"iterations", material.termination.iterations}}},
+      {"timings_s", material.timings_s},
+      {"source",
+       {{"file", material.source.file},
+        {"sha256", material.source.sha256},
+        {"format", material.source.format},
+        {"conventions", material.source.conventions}}},
+      {"recipe",
+       {{"name", material.recipe_name},
+        {"reason", material.recipe_reason},
+        {"metric", material.metric},
+        {"weighting", material.weighting},
+        {"loss", material.loss},
+        {"theta_max_deg", material.theta_max_deg}}},
+  };
+  // Bytes that are not UTF-8 (a file name may hold any) become the replacement character.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Material MaterialFromJson(const std::string& text, const std::string& file_name) {
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw InputError(fmt::format("{}: is not JSON: {}", file_name, error.what()));
+  }
+  const Reader reader(json, file_name);
+  if (!json.is_object() || json.value("format", Json()) != Json("lobefit material")) {
+    throw InputError(file_name +
+                     ": is not a material document of lobefit (its member 'format' must be \"lobefit material\")");
+  }
+  const std::string version = reader.Get<std::string>(json, "format_version");
+  if (version.substr(0, 2) != "1.")
+    reader.Fail(fmt::format("format_version {} is not readable here; this version reads 1.x", version));
+  try {
+    Material material;
+    material.model = ReadModel(reader);
+    material.channels = reader.Get<std::vector<std::string>>(json, "channels");
+    material.wavelengths_nm = reader.Get<std::vector<double>>(json, "wavelengths_nm");
+    if (material.channels.empty()) reader.Fail("has no channel");
+    ReadParameters(reader, &material);
+    ReadRest(reader, &material);
+    return material;
+  } catch (const Json::exception& error) {
+    reader.Fail(fmt::format("does not follow the schema: {}", error.what()));
+  }
+}
+
+Material ReadMaterial(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  return MaterialFromJson(std::string(file.bytes()), path.string());
+}
+
+void WriteMaterial(const Material& material, const std::filesystem::path& path) {
+  WriteFileAtomically(path, ToJson(material));
+}
+
+}  // namespace lobefit
