@@ -9,6 +9,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/math/vec.h"
 #include "lobefit/recipe/recipe.h"
 
 namespace lobefit {
