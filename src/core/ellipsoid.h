@@ -74,7 +74,8 @@ class EllipsoidFrame {
   std::array<double, kEllipsoidParameters> dnorm2_an_;
 };
 
-// Definitions, as printed (math.md: correct as printed), for any scalar with arithmetic; the oracle of the tests.
+// Definitions for any scalar with arithmetic, the oracle of the tests: D as printed, sigma with the rationalised form
+// for Au.An < 0.
 template <class T>
 T EllipsoidDFormula(const T* p, const Vec3T<T>& wm) {
   using std::sqrt;
@@ -94,7 +95,8 @@ T EllipsoidSigmaFormula(const T* p, const Vec3T<T>& u) {
   const Vec3T<T> au = {p[0] * v.x, p[1] * v.y, v.z};
   const Vec3T<T> an = {p[0] * r.row[0].z, p[1] * r.row[1].z, r.row[2].z};
   const T d = Dot(au, an), nn = Dot(an, an);
-  const Vec3T<T> cross = Cross(au, an);
+  const Vec3T<T> e = r * Vec3T<T>{u.y, -u.x, T(0.0)};  // Au x An = S* R (u x n)
+  const Vec3T<T> cross = {p[1] * e.x, p[0] * e.y, p[0] * p[1] * e.z};
   const T norms = Norm(au) * Norm(an);
   if (d < 0.0) return Dot(cross, cross) / (T(2.0) * nn * (norms - d));
   return (norms + d) / (T(2.0) * nn);

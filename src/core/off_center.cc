@@ -264,7 +264,7 @@ SlopeCoordinates SlopeCoordinatesFromOffCenter(const OffCenter& off_center, doub
     std::fill(jacobian, jacobian + 25, 0.0);
     jacobian[0] = jacobian[6] = 1.0;
     jacobian[12] = 0.5 / aa;
-    jacobian[17] = -0.5 * ratio / aa;
+    jacobian[17] = -0.5 * root.b / aa;
     jacobian[18] = 1.0 / root.a;
     jacobian[22] = 0.5 * ratio * ratio / cc;  // c^2 = q22 - q12^2 / q11
     jacobian[23] = -ratio / cc;
