@@ -12,8 +12,9 @@ namespace lobefit {
 
 enum class AngleUnit { kDegrees, kRadians };
 // What the file's numbers are: f_r; f_r times the cosine of wo or of wi; pi f_r (reflectance factor); radiant intensity
-// per incident flux, which is f_r cos(theta_o) too but per irradiance of the whole sample.
-enum class ValueKind { kBrdf, kBrdfCosO, kBrdfCosI, kReflectanceFactor, kIntensity };
+// per incident flux, which is f_r cos(theta_o) too but per irradiance of the whole sample; pi f_r cos(theta_o) (a
+// detector's reading relative to a white standard that faces it).
+enum class ValueKind { kBrdf, kBrdfCosO, kBrdfCosI, kReflectanceFactor, kIntensity, kReading };
 // Whether the file's incident direction points to the source (as here) or along the propagation of the light.
 enum class IncidentSense { kTowardsSource, kPropagation };
 enum class CellPosition { kCentre, kEdge };
@@ -31,8 +32,8 @@ enum class MountainAzimuth { kFile, kUp };
 // says. Every choice that a reader makes is echoed in Measurement::conventions under the option's name on the command
 // line.
 struct ReadOptions {
-  std::optional<AngleUnit> angle_unit;          // --angle-unit deg|rad          (csv, astm)
-  std::optional<ValueKind> value_kind;          // --value-kind f|f-cos-o|f-cos-i|pi-f|intensity   (csv, alta, astm)
+  std::optional<AngleUnit> angle_unit;  // --angle-unit deg|rad          (csv, astm)
+  std::optional<ValueKind> value_kind;  // --value-kind f|f-cos-o|f-cos-i|pi-f|intensity|pi-f-cos-o (csv, alta, astm)
   std::optional<IncidentSense> incident_sense;  // --incident towards|propagation (csv, astm, fred)
   std::optional<std::string> value_column;      // --value-column NAME            (csv with several candidate columns)
   CellPosition merl_cell = CellPosition::kCentre;  // --merl-cell centre|edge      (merl)

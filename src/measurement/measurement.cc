@@ -1,9 +1,9 @@
 #include "lobefit/measurement/measurement.h"
 
-#include <array>
 #include <cmath>
-#include <unordered_set>
 #include <utility>
+
+#include "lobefit/measurement/pair_index.h"
 
 namespace lobefit {
 namespace {
@@ -21,27 +21,6 @@ void ForEachArray(Samples& samples, Function&& function) {
 }
 
 bool IsFinite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-// Directions rounded to 1e-9, as a key for finding repeated pairs.
-struct PairKey {
-  std::array<std::int64_t, 6> rounded;
-  bool operator==(const PairKey&) const = default;
-};
-struct PairKeyHash {
-  std::size_t operator()(const PairKey& key) const {
-    std::uint64_t hash = 0x9e3779b97f4a7c15U;
-    for (const std::int64_t part : key.rounded) {
-      hash ^= static_cast<std::uint64_t>(part) + 0x9e3779b97f4a7c15U + (hash << 6) + (hash >> 2);
-      hash *= 0xff51afd7ed558ccdU;
-    }
-    return hash ^ (hash >> 32);
-  }
-};
-
-PairKey KeyOf(const Vec3& wi, const Vec3& wo) {
-  const auto rounded = [](double x) { return static_cast<std::int64_t>(std::llround(x * 1e9)); };
-  return {{rounded(wi.x), rounded(wi.y), rounded(wi.z), rounded(wo.x), rounded(wo.y), rounded(wo.z)}};
-}
 
 }  // namespace
 
@@ -115,16 +94,16 @@ bool MeasurementBuilder::Add(const Vec3& wi, const Vec3& wo, const double* value
 
 Measurement MeasurementBuilder::Finish() {
   Samples& samples = measurement_.samples;
-  std::unordered_set<PairKey, PairKeyHash> seen;
-  seen.reserve(samples.size());
+  PairIndex seen(samples.size());
   std::vector<std::uint8_t> keep(samples.size(), 1);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!seen.insert(KeyOf(samples.wi(i), samples.wo(i))).second) {
+    const std::size_t known = seen.size();
+    if (seen.FindOrAdd(samples.wi(i), samples.wo(i)) < known) {
       keep[i] = 0;
       Skip(SetAsideReason::kDuplicate);
     }
   }
-  samples.Keep(keep);
+  if (seen.size() < samples.size()) samples.Keep(keep);
   return std::move(measurement_);
 }
 
