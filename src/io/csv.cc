@@ -294,6 +294,7 @@ class CsvReader {
       builder->Skip(SetAsideReason::kBelowHorizon);
       return;
     }
+    const double factor = BrdfFactor(layout_.value_kind, wi.z, wo.z);
     values_.resize(layout_.values.size());
     for (std::size_t c = 0; c < values_.size(); ++c) values_[c] = factor * fields_[layout_.values[c]];
     if (layout_.wavelength != kNoColumn) {
