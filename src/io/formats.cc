@@ -6,6 +6,14 @@ const std::vector<Format>& Formats() {
   static const std::vector<Format> formats = {
       {"rgl", "RGL/EPFL .bsdf tensor file", IsRgl, ReadRgl},
       {"merl", "MERL .binary table", IsMerl, ReadMerl},
+      {"mbsdf", "MDL .mbsdf isotropic table", IsMbsdf, ReadMbsdf},
+      {"zemax", "Zemax BSDF Data Interchange text", IsZemax, ReadZemax},
+      {"lighttools", "LightTools .bsdf text", IsLightTools, ReadLightTools},
+      {"fred", "FRED tabular scatter text", IsFred, ReadFred},
+      {"astm", "ASTM E1392/E2387 text", IsAstm, ReadAstm},
+      {"alta", "ALTA text or binary", IsAlta, ReadAlta},
+      {"mountain", "pab-opto Mountain text", IsMountain, ReadMountain},
+      {"cornell", "Cornell spectral text", IsCornell, ReadCornell},
       {"csv", "goniometer rows with column names, comma, semicolon or tab separated", IsCsv, ReadCsv},
   };
   return formats;

@@ -10,6 +10,7 @@
 
 #include "lobefit/base/text.h"
 #include "lobefit/io/read.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 
@@ -27,6 +28,10 @@ std::optional<std::size_t> CheckedProduct(std::initializer_list<std::size_t> fac
 // names the field in the message ("theta_i").
 double NumberAt(const InputFile& file, std::size_t line, std::string_view field, const std::string& what);
 double FiniteNumberAt(const InputFile& file, std::size_t line, std::string_view field, const std::string& what);
+
+// Whether a unit direction counts as above the surface: the threshold of MeasurementBuilder::Add. For readers that tell
+// a hole above the horizon from a cell below it.
+inline bool IsAboveHorizon(const Vec3& unit_direction) { return unit_direction.z > 1e-9; }
 
 // Scales positive factors so that their mean is 1; does nothing to an empty array.
 void ScaleToMeanOne(std::vector<double>* factors);
