@@ -129,6 +129,17 @@ double XMinusSin(double x) {
   return sum;
 }
 
+double AtanhMinusX(double x) {
+  if (std::fabs(x) > 0.5) return std::atanh(x) - x;
+  const double square = x * x;
+  double power = x * square, sum = power / 3;
+  for (int j = 5; std::fabs(power) > 1e-18 * std::fabs(sum); j += 2) {
+    power *= square;
+    sum += power / j;
+  }
+  return sum;
+}
+
 double OneMinusCos(double x) {
   const double s = std::sin(0.5 * x);
   return 2 * s * s;

@@ -28,4 +28,7 @@ void SphericalBesselRatios(double k, int l_max, std::vector<double>* rho, std::v
 double XMinusSin(double x);
 double OneMinusCos(double x);
 
+// atanh(x) - x without cancellation, |x| < 1.
+double AtanhMinusX(double x);
+
 }  // namespace lobefit

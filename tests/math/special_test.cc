@@ -142,6 +142,13 @@ TEST(Special, CancellationFreeTrigonometry) {
     EXPECT_EQ(XMinusSin(-x), -XMinusSin(x));
   }
   ExpectRelative(XMinusSin(1e-3), 1.6666665833333353e-10, 4);
+  for (const double x : {1e-8, 0.1, 0.4999, 0.5001, 0.999}) {
+    EXPECT_NEAR(AtanhMinusX(x) + x, std::atanh(x), 2 * kEps * std::atanh(x));
+    EXPECT_EQ(AtanhMinusX(-x), -AtanhMinusX(x));
+  }
+  EXPECT_EQ(AtanhMinusX(0), 0);
+  ExpectRelative(AtanhMinusX(1e-3), 3.3333353333347621e-10, 4);
+  ExpectRelative(AtanhMinusX(0.25), 5.4128118829953416e-3, 4);
 }
 
 }  // namespace
