@@ -1,0 +1,20 @@
+// The page of a report: heading, panels in their layout, and where the numbers come from at the foot.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lobefit/report/canvas.h"
+#include "lobefit/report/panel.h"
+
+namespace lobefit {
+
+// Ids of the panels that were drawn go to `ids` unless null.
+Canvas DrawPage(const ReportData& data, double scale, const std::shared_ptr<Fonts>& fonts,
+                std::vector<std::string>* ids = nullptr);
+
+// One panel alone, without the page around it, `width` units wide.
+Canvas DrawPanelAlone(const Panel& panel, double width, double scale, const std::shared_ptr<Fonts>& fonts);
+
+}  // namespace lobefit

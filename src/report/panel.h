@@ -1,0 +1,41 @@
+// A panel is one figure or table of a report. Each is made in a source file of its own, from the data; a maker returns
+// nothing where the measurement cannot fill it, and the layout closes the gap.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lobefit/report/canvas.h"
+#include "lobefit/report/report_data.h"
+
+namespace lobefit {
+
+struct LegendEntry {
+  enum class Mark { kDot, kLine, kBand, kSwatch };
+  Mark mark = Mark::kDot;
+  Rgb color;
+  std::string text;
+};
+
+struct Panel {
+  std::string id;  // stable name, for tests and anchors
+  std::string title;
+  std::vector<LegendEntry> legend;  // right of the title
+  bool wide = true;                 // two thirds of the page; else one third
+  // Height of the content for a width, page units; the layout may give more.
+  std::function<double(Canvas*, double width)> height;
+  std::function<void(Canvas*, const Box& content)> draw;
+};
+
+using PanelMaker = std::optional<Panel> (*)(const ReportData& data);
+
+std::optional<Panel> CurvesPanel(const ReportData& data);
+std::optional<Panel> ParametersPanel(const ReportData& data);
+std::optional<Panel> QualityPanel(const ReportData& data);
+
+// In the order of the page.
+const std::vector<PanelMaker>& PanelMakers();
+
+}  // namespace lobefit

@@ -1,0 +1,27 @@
+// Pictures by which a fit is judged: NAME.report.png.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lobefit/material/material.h"
+#include "lobefit/measurement/measurement.h"
+
+namespace lobefit {
+
+struct ReportOptions {
+  int threads = 1;
+  // Pixels to one page unit. The page is 1320 units wide; text is at least 11 units high.
+  double scale = 2;
+  // Folders searched for DejaVu fonts; empty: the usual places. Without them OpenCV's stroke font is used.
+  std::vector<std::string> font_folders;
+};
+
+// Draws `material` against the measurement that it was fitted to, as a PNG. Panels that the measurement cannot fill are
+// left out. Throws InputError where the channels of the two differ or there is no sample, OutputError where the file
+// cannot be written.
+void WriteReportPng(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
+                    const ReportOptions& options = {});
+
+}  // namespace lobefit
