@@ -377,8 +377,15 @@ bool IsCsv(std::string_view bytes) {
       if (byte < 0x20 && byte != '\t') return false;
     }
     if (Trim(line).empty() || IsComment(line)) continue;
-    const bool separated = line.find_first_of(",;\t") != std::string_view::npos;
-    return separated || SplitBlanks(line).size() >= 3;
+    if (line.find_first_of(",;\t") != std::string_view::npos) return true;
+    // Words between blanks are prose, unless they are numbers or one of them is a column's name.
+    bool numbers = true, named = false;
+    const std::vector<std::string_view> words = SplitBlanks(line);
+    for (const std::string_view word : words) {
+      numbers = numbers && ParseDouble(word).has_value();
+      named = named || ClassifyColumn(word).role == ColumnRole::kThetaI;
+    }
+    return words.size() >= 3 && (numbers || named);
   }
   return false;
 }

@@ -39,19 +39,21 @@ struct RglTables {
   throw InputError(file.path().string() + ": " + what);
 }
 
-Grid GetGrid(const TensorFile& file, const std::string& name, std::size_t ndim) {
+enum class Holes { kForbidden, kAllowed };
+
+Grid GetGrid(const TensorFile& file, const std::string& name, std::size_t ndim, Holes holes = Holes::kForbidden) {
   Grid grid;
   const TensorField& field = file.Get(name, TensorType::kFloat32, ndim);
   grid.shape.assign(field.shape.begin(), field.shape.end());
   if (grid.width() < 2 || grid.height() < 2) {
     Fail(file, "field '" + name + "' has shape " + field.ShapeText() + "; its last two extents must be at least 2");
   }
-  grid.values = file.GetFloats(name, ndim);
+  grid.values = holes == Holes::kAllowed ? file.GetFloats(name, ndim) : file.GetFiniteFloats(name, ndim);
   return grid;
 }
 
 std::vector<float> GetAngles(const TensorFile& file, const std::string& name, double limit) {
-  std::vector<float> angles = file.GetFloats(name, 1);
+  std::vector<float> angles = file.GetFiniteFloats(name, 1);
   if (angles.empty()) Fail(file, "field '" + name + "' is empty; it must list angles in radians");
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double angle = static_cast<double>(angles[i]);
@@ -117,11 +119,11 @@ RglTables ReadTables(const TensorFile& file) {
   CheckDensity(file, "vndf", tables.vndf);
   tables.spectral = !file.Has("rgb");
   const std::string name = tables.spectral ? "spectra" : "rgb";
-  tables.spectra = GetGrid(file, name, 5);
+  tables.spectra = GetGrid(file, name, 5, Holes::kAllowed);
   CheckLeading(file, name, tables.spectra, tables);
   const std::size_t channels = tables.spectra.shape[2];
   if (tables.spectral) {
-    tables.wavelengths = file.GetFloats("wavelengths", 1);
+    tables.wavelengths = file.GetFiniteFloats("wavelengths", 1);
     if (tables.wavelengths.size() != channels) {
       Fail(file, "field 'spectra' has " + std::to_string(channels) + " channels, but 'wavelengths' has " +
                      std::to_string(tables.wavelengths.size()) + " entries");

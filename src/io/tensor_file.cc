@@ -176,6 +176,11 @@ std::vector<float> TensorFile::GetFloats(const std::string& name, std::size_t nd
   const TensorField& field = Get(name, TensorType::kFloat32, ndim);
   std::vector<float> values(field.count);
   if (field.count > 0) std::memcpy(values.data(), field.bytes.data(), field.bytes.size());
+  return values;
+}
+
+std::vector<float> TensorFile::GetFiniteFloats(const std::string& name, std::size_t ndim) const {
+  std::vector<float> values = GetFloats(name, ndim);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) {
       throw InputError(path_.string() + ": field '" + name + "': element " + std::to_string(i) + " is " +

@@ -55,8 +55,9 @@ class TensorFile {
   // The field `name` with its type and number of dimensions checked. Throws InputError that lists the fields of the
   // file.
   const TensorField& Get(const std::string& name, TensorType type, std::size_t ndim) const;
-  // A copy of a float32 field; every element must be finite (InputError with the index otherwise).
+  // A copy of a float32 field. GetFiniteFloats: every element must be finite (InputError with the index otherwise).
   std::vector<float> GetFloats(const std::string& name, std::size_t ndim) const;
+  std::vector<float> GetFiniteFloats(const std::string& name, std::size_t ndim) const;
   const std::filesystem::path& path() const { return path_; }
 
  private:

@@ -41,7 +41,7 @@ TEST(TensorFile, RefusesMissingFieldsWrongTypesAndNumbersThatAreNotFinite) {
   EXPECT_THROW(file.Get("b", TensorType::kFloat32, 1), InputError);
   EXPECT_THROW(file.Get("a", TensorType::kFloat64, 1), InputError);
   EXPECT_THROW(file.Get("a", TensorType::kFloat32, 2), InputError);
-  EXPECT_THROW(file.GetFloats("a", 1), InputError);
+  EXPECT_THROW(file.GetFiniteFloats("a", 1), InputError);
 }
 
 // Every cut and every changed byte of the head is either refused or read within the bounds of the file (checked by the
