@@ -35,7 +35,7 @@ const std::vector<Choice<Loss>>& LossChoices() {
 }
 
 bool Recipe::IsFree(std::size_t index) const {
-  return Parameters(model)[index].free && !parameters[index].fixed.has_value();
+  return Parameters(model)[index].free && parameters[index].fixed.empty();
 }
 
 Recipe DefaultRecipe(const Model& model, const std::string& name) {

@@ -33,8 +33,10 @@ const std::vector<Choice<Loss>>& LossChoices();
 
 // What a recipe says of one parameter; inside units. Bounds default to the range in the parameter table.
 struct ParameterRecipe {
-  std::optional<double> start;
-  std::optional<double> fixed;
+  // Empty: not given. One value, or one a channel. Starts of amplitudes and albedos are only used by synthesis: fits
+  // solve for them.
+  std::vector<double> start;
+  std::vector<double> fixed;
   std::optional<double> low, high;
   bool shared = false;  // one value for all channels
 };

@@ -69,6 +69,26 @@ const toml::table* Table(const toml::table& table, const char* key, const Place&
   return node->as_table();
 }
 
+// A number or, where `per_channel`, a list of numbers; times `factor`.
+std::vector<double> Numbers(const toml::table& table, const char* key, bool per_channel, double factor,
+                            const Place& place) {
+  std::vector<double> numbers;
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return numbers;
+  const toml::array* array = node->as_array();
+  if (array == nullptr) return {*Number(table, key, place) * factor};
+  for (const toml::node& entry : *array) {
+    const std::optional<double> value = entry.value<double>();
+    if (!per_channel || !value || !entry.is_number() || !std::isfinite(*value)) {
+      place.Fail(node->source(), fmt::format("'{}' must be a finite number{}", key,
+                                             per_channel ? " or a list of them, one a channel" : ""));
+    }
+    numbers.push_back(*value * factor);
+  }
+  if (numbers.empty()) place.Fail(node->source(), fmt::format("'{}' is an empty list", key));
+  return numbers;
+}
+
 // One parameter: { start, fixed, bounds = [low, high], shared }.
 ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter, const Place& place) {
   const std::string& name = parameter.json_name;
@@ -79,12 +99,9 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
   const toml::table& table = *node.as_table();
   CheckKeys(table, {"start", "fixed", "bounds", "shared"}, "of parameter '" + name + "'", place);
   const double factor = InsideFactor(parameter);
-  const auto inside = [&](std::optional<double> value) {
-    return value ? std::optional<double>(*value * factor) : value;
-  };
   ParameterRecipe recipe;
-  recipe.start = inside(Number(table, "start", place));
-  recipe.fixed = inside(Number(table, "fixed", place));
+  recipe.start = Numbers(table, "start", parameter.per_channel, factor, place);
+  recipe.fixed = Numbers(table, "fixed", parameter.per_channel, factor, place);
   if (const toml::node* bounds = table.get("bounds")) {
     const toml::array* array = bounds->as_array();
     const bool two_numbers =
@@ -106,17 +123,18 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
     if (recipe.shared && !parameter.per_channel)
       place.Fail(shared->source(), fmt::format("'{}' has one value for all channels anyway", name));
   }
-  if (recipe.fixed && (recipe.start || recipe.low))
+  if (!recipe.fixed.empty() && (!recipe.start.empty() || recipe.low))
     place.Fail(node.source(), fmt::format("'{}' is fixed: start and bounds do not apply", name));
-  if (!parameter.free && (recipe.start || recipe.low || recipe.shared)) {
+  if (!parameter.free && (!recipe.start.empty() || recipe.low || recipe.shared)) {
     place.Fail(node.source(), fmt::format("'{}' is not a free parameter of this ndf; it can only be fixed", name));
   }
-  for (const std::optional<double>& value : {recipe.start, recipe.fixed}) {
-    if (!value) continue;
-    const double low = recipe.low.value_or(parameter.low), high = recipe.high.value_or(parameter.high);
-    if (*value < low - 1e-12 || *value > high + 1e-12) {
-      place.Fail(node.source(), fmt::format("'{}' = {:g} lies outside its bounds [{:g}, {:g}]", name, *value / factor,
-                                            low / factor, high / factor));
+  for (const std::vector<double>& values : {recipe.start, recipe.fixed}) {
+    for (const double value : values) {
+      const double low = recipe.low.value_or(parameter.low), high = recipe.high.value_or(parameter.high);
+      if (value < low - 1e-12 || value > high + 1e-12) {
+        place.Fail(node.source(), fmt::format("'{}' = {:g} lies outside its bounds [{:g}, {:g}]", name, value / factor,
+                                              low / factor, high / factor));
+      }
     }
   }
   return recipe;
@@ -215,8 +233,13 @@ std::string ToToml(const Recipe& recipe) {
     const ParameterRecipe& parameter = recipe.parameters[i];
     const double factor = InsideFactor(parameters[i]);
     std::vector<std::string> parts;
-    if (parameter.start) parts.push_back("start = " + FormatDouble(*parameter.start / factor));
-    if (parameter.fixed) parts.push_back("fixed = " + FormatDouble(*parameter.fixed / factor));
+    const auto list = [&](const std::vector<double>& values) {
+      std::vector<std::string> numbers;
+      for (const double value : values) numbers.push_back(FormatDouble(value / factor));
+      return numbers.size() == 1 ? numbers[0] : "[" + Join(numbers) + "]";
+    };
+    if (!parameter.start.empty()) parts.push_back("start = " + list(parameter.start));
+    if (!parameter.fixed.empty()) parts.push_back("fixed = " + list(parameter.fixed));
     if (parameter.low)
       parts.push_back(fmt::format("bounds = [{}, {}]", FormatDouble(*parameter.low / factor),
                                   FormatDouble(*parameter.high / factor)));

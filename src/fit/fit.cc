@@ -1,0 +1,317 @@
+#include "lobefit/fit/fit.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/parallel.h"
+#include "lobefit/fit/layout.h"
+#include "lobefit/fit/problem.h"
+#include "lobefit/fit/solve.h"
+#include "lobefit/fit/starts.h"
+#include "lobefit/fit/uncertainty.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/measurement/incidence.h"
+
+namespace lobefit {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+struct DistinctMinimum {
+  Solution solution;
+  std::size_t starts = 1;
+};
+
+// Two descents ended in the same minimum where their costs agree to a relative 1e-5 (the subsample's descents end at
+// 1e-12).
+bool SameCost(double a, double b) { return std::fabs(a - b) <= 1e-5 * std::max(a, b) + 1e-280; }
+
+// Distinct minima, best first.
+std::vector<DistinctMinimum> Distinct(std::vector<Solution> solutions) {
+  std::erase_if(solutions, [](const Solution& s) { return !std::isfinite(s.cost); });
+  std::stable_sort(solutions.begin(), solutions.end(),
+                   [](const Solution& a, const Solution& b) { return a.cost < b.cost; });
+  std::vector<DistinctMinimum> minima;
+  for (const Solution& solution : solutions) {
+    if (!minima.empty() && SameCost(minima.back().solution.cost, solution.cost)) {
+      ++minima.back().starts;
+    } else {
+      minima.push_back({solution, 1});
+    }
+  }
+  return minima;
+}
+
+// Descends from the best starts on `samples`.
+std::vector<DistinctMinimum> Search(const Problem& problem, const Layout& layout, const Samples& samples,
+                                    const FitOptions& options, ThreadPool* pool) {
+  std::vector<Start> starts = RankedStarts(problem, layout, samples, pool);
+  if (starts.size() > options.starts) starts.resize(options.starts);
+  std::vector<Solution> solutions(starts.size());
+  pool->Run(starts.size(), [&](std::size_t k) {
+    ThreadPool alone(1);
+    solutions[k] = Solve(problem, layout, starts[k].u, {}, &alone);
+  });
+  return Distinct(std::move(solutions));
+}
+
+// Root mean square residual under each metric with the recipe's weighting, over all samples and channels that the
+// metric can take.
+std::vector<MetricError> ErrorsUnderAllMetrics(const Problem& problem, const Samples& samples, const Layout& layout,
+                                               const std::vector<double>& u, ThreadPool* pool) {
+  const KernelModel kernel = layout.ToKernel(u.data());
+  const std::size_t metrics = MetricChoices().size(), runs = RunCount(samples.size());
+  std::vector<std::vector<double>> squares(runs, std::vector<double>(metrics, 0.0)), weights = squares;
+  pool->Run(runs, [&](std::size_t run) {
+    std::vector<std::vector<double>> f;
+    constexpr std::size_t kPiece = 2048;
+    std::vector<double> model(kPiece), target(kPiece);
+    const std::size_t last = RunBegin(samples.size(), run + 1);
+    for (std::size_t begin = RunBegin(samples.size(), run); begin < last; begin += kPiece) {
+      const std::size_t end = std::min(last, begin + kPiece);
+      ModelValues(problem.kernel_samples(), kernel, begin, end, &f);
+      for (std::size_t m = 0; m < metrics; ++m) {
+        const Metric metric = MetricChoices()[m].value;
+        const Transform transform = TransformOf(metric);
+        for (std::size_t c = 0; c < samples.values.size(); ++c) {
+          TransformMeasured(transform, f[c].data(), samples.wi_z.data() + begin, end - begin, model.data());
+          TransformMeasured(transform, samples.values[c].data() + begin, samples.wi_z.data() + begin, end - begin,
+                            target.data());
+          for (std::size_t i = begin; i < end; ++i) {
+            double w = layout.recipe().weighting == Weighting::kSolidAngle ? samples.solid_angle[i] : 1.0;
+            if (metric == Metric::kNgan || metric == Metric::kLowLog)
+              w *= std::sqrt(std::max(0.0, 1 - samples.wi_z[i] * samples.wi_z[i]));
+            if (metric == Metric::kNgan) w *= std::sqrt(std::max(0.0, 1 - samples.wo_z[i] * samples.wo_z[i]));
+            double r = model[i - begin] - target[i - begin];
+            if (transform == Transform::kRelative) {
+              if (target[i - begin] <= 0) continue;
+              r /= target[i - begin];
+            }
+            if (!std::isfinite(r)) continue;
+            squares[run][m] += w * r * r;
+            weights[run][m] += w;
+          }
+        }
+      }
+    }
+  });
+  std::vector<MetricError> errors;
+  for (std::size_t m = 0; m < metrics; ++m) {
+    double square = 0, weight = 0;
+    for (std::size_t run = 0; run < runs; ++run) {
+      square += squares[run][m];
+      weight += weights[run][m];
+    }
+    errors.push_back({MetricChoices()[m].name, weight > 0 ? std::sqrt(square / weight) : kNan});
+  }
+  return errors;
+}
+
+// Flattened entry names of Layout::Report: "alpha_x", "f0[R]".
+std::vector<std::string> EntryNames(const std::vector<Parameter>& parameters,
+                                    const std::vector<std::string>& channels) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : parameters) {
+    if (!parameter.per_channel) names.push_back(parameter.json_name);
+    for (std::size_t c = 0; parameter.per_channel && c < channels.size(); ++c)
+      names.push_back(parameter.json_name + "[" + channels[c] + "]");
+  }
+  return names;
+}
+
+double SquareRoot(double variance) { return variance > 0 ? std::sqrt(variance) : kNan; }
+
+// Angles that are not determined because two alphas agree within the error; their intervals would mean nothing.
+void FlagEqualAlphas(const Eigen::MatrixXd& covariance, std::size_t first, const std::string& prefix,
+                     Material* material) {
+  FittedParameter* p = material->parameters.data() + first;
+  if (!p[0].free || !p[1].free || !p[4].free) return;
+  const double gap = p[0].values[0] - p[1].values[0];
+  const auto i = static_cast<Eigen::Index>(first);
+  const double variance = covariance(i, i) + covariance(i + 1, i + 1) - 2 * covariance(i, i + 1);
+  const double sigmas = std::isfinite(variance) && variance > 0 ? gap / std::sqrt(variance) : 0.0;
+  if (sigmas >= 2) return;
+  p[4].standard_error = p[4].standard_error_clustered = {kNan};
+  material->degenerate.push_back(
+      fmt::format("{}theta_z: {}alpha_x and {}alpha_y agree within {:.1f} sigma, so the axes have no direction", prefix,
+                  prefix, prefix, sigmas));
+}
+
+// Parameters, errors and covariance in outside terms.
+void Report(const Layout& layout, const std::vector<double>& u, const Uncertainty& uncertainty, Material* material) {
+  const Recipe& recipe = layout.recipe();
+  const std::vector<Parameter> parameters = Parameters(recipe.model);
+  const ParameterValues values = layout.Report(u.data());
+  const Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
+  const Eigen::MatrixXd covariance = jacobian * uncertainty.covariance * jacobian.transpose();
+  const Eigen::MatrixXd clustered = jacobian * uncertainty.clustered * jacobian.transpose();
+  std::vector<Eigen::Index> free_rows;
+  std::vector<double> factors;
+  const std::vector<std::string> names = EntryNames(parameters, material->channels);
+  Eigen::Index row = 0;
+  std::size_t linear_seen = 0;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    FittedParameter fitted;
+    fitted.values = values[i];
+    fitted.free = recipe.IsFree(i);
+    const bool shape = parameters[i].group == ParameterGroup::kShape;
+    for (std::size_t c = 0; c < values[i].size(); ++c, ++row) {
+      fitted.standard_error.push_back(fitted.free ? SquareRoot(covariance(row, row)) : kNan);
+      fitted.standard_error_clustered.push_back(
+          fitted.free && uncertainty.has_clusters ? SquareRoot(clustered(row, row)) : kNan);
+      if (fitted.free) {
+        free_rows.push_back(row);
+        factors.push_back(1 / InsideFactor(parameters[i]));
+        const int index = shape ? -1 : layout.linear(c)[linear_seen].index;
+        fitted.at_bound = fitted.at_bound || (index >= 0 && uncertainty.at_bound[static_cast<std::size_t>(index)]);
+      }
+    }
+    if (!shape) ++linear_seen;
+    if (shape && fitted.free) {
+      // A shape coordinate held at a bound marks the parameters that depend on it.
+      for (std::size_t k = 0; k < layout.shape_size(); ++k) {
+        const double dependence = jacobian(row - 1, static_cast<Eigen::Index>(k));
+        fitted.at_bound =
+            fitted.at_bound || (uncertainty.at_bound[k] && (std::isnan(dependence) || std::fabs(dependence) > 1e-9));
+      }
+    }
+    material->parameters.push_back(fitted);
+  }
+  for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
+    FlagEqualAlphas(covariance, l * (5 + layout.channels()), l == 0 ? "" : fmt::format("lobe{}.", l + 1), material);
+    const KernelModel kernel = layout.ToKernel(u.data());
+    const OffCenter off_center = OffCenterFromSlopeCoordinates(kernel.lobes[l].shape);
+    const double ax = std::sqrt(off_center.q11), ay = std::sqrt(off_center.q22);
+    material->slope_space.push_back({off_center.slope_x, off_center.slope_y, ax, ay, off_center.q12 / (ax * ay)});
+  }
+  for (std::size_t a = 0; a < free_rows.size(); ++a) {
+    material->covariance_names.push_back(names[static_cast<std::size_t>(free_rows[a])]);
+    for (std::size_t b = 0; b < free_rows.size(); ++b) {
+      material->covariance.push_back(covariance(free_rows[a], free_rows[b]) * factors[a] * factors[b]);
+    }
+  }
+}
+
+Minimum Describe(const Layout& layout, const DistinctMinimum& minimum) {
+  Minimum described;
+  described.cost = minimum.solution.cost;
+  described.starts = minimum.starts;
+  const std::vector<Parameter> parameters = Parameters(layout.recipe().model);
+  const ParameterValues values = layout.Report(minimum.solution.u.data());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].group == ParameterGroup::kShape) {
+      described.parameters.emplace_back(parameters[i].json_name, values[i][0] / InsideFactor(parameters[i]));
+    }
+  }
+  return described;
+}
+
+}  // namespace
+
+MeasurementTraits TraitsOf(const Measurement& measurement) {
+  MeasurementTraits traits;
+  traits.isotropic = measurement.isotropic;
+  traits.samples = measurement.samples.size();
+  traits.in_plane = IsInPlane(measurement.samples);
+  if (traits.in_plane) {
+    double best = 0;
+    for (std::size_t i = 0; i < measurement.samples.size(); ++i) {
+      const Vec3 wo = measurement.samples.wo(i);
+      const double length = std::hypot(wo.x, wo.y);
+      if (length <= best) continue;
+      best = length;
+      // The plane's azimuth in (-pi/2, pi/2].
+      traits.plane_azimuth = std::atan(wo.y / wo.x);
+      if (wo.x == 0) traits.plane_azimuth = kPi / 2;
+    }
+    if (std::fabs(traits.plane_azimuth) < 1e-6) traits.plane_azimuth = 0;
+  }
+  return traits;
+}
+
+Material Fit(const Recipe& recipe, const FitOptions& options, Measurement* measurement) {
+  const auto start_time = std::chrono::steady_clock::now();
+  const std::size_t read = measurement->samples.size() + measurement->set_aside.total();
+  SetAsideForRecipe(recipe, measurement);
+  const Samples& samples = measurement->samples;
+  const Layout layout(recipe, measurement->channels.names);
+  if (samples.size() * layout.channels() < layout.size()) {
+    throw InputError(
+        fmt::format("{}: {} usable samples in {} channels are fewer than the {} free parameters of recipe '{}'; use a "
+                    "simpler recipe",
+                    measurement->source, samples.size(), layout.channels(), layout.size(), recipe.name));
+  }
+  ThreadPool pool(std::max(1, options.threads));
+  const Problem problem(samples, recipe);
+
+  std::vector<DistinctMinimum> minima;
+  if (samples.size() <= 3 * options.subsample) {
+    minima = Search(problem, layout, samples, options, &pool);
+  } else {
+    const Samples subsample = samples.Subset(StratifiedSubsample(samples.size(), options.subsample, options.seed));
+    minima = Search(Problem(subsample, recipe), layout, subsample, options, &pool);
+    // Minima that are clearly worse on the subsample are not finished; their cost is scaled to all samples.
+    const double scale = static_cast<double>(samples.size()) / static_cast<double>(subsample.size());
+    std::size_t finished = 0;
+    SolveOptions finish;
+    finish.function_tolerance = 1e-10;
+    for (DistinctMinimum& minimum : minima) {
+      if (finished < 2 && minimum.solution.cost < 1.2 * minima[0].solution.cost) {
+        const int before = minimum.solution.iterations;
+        minimum.solution = Solve(problem, layout, minimum.solution.u, finish, &pool);
+        minimum.solution.iterations += before;
+        ++finished;
+      } else {
+        minimum.solution.cost *= scale;
+      }
+    }
+    if (minima.size() >= 2 && finished == 2 && minima[1].solution.cost < minima[0].solution.cost)
+      std::swap(minima[0], minima[1]);
+    if (minima.size() >= 2 && finished == 2 && SameCost(minima[0].solution.cost, minima[1].solution.cost)) {
+      minima[0].starts += minima[1].starts;
+      minima.erase(minima.begin() + 1);
+    }
+  }
+  if (minima.empty())
+    throw InputError(measurement->source +
+                     ": no start of the fit has a finite cost; look at the values with `lobefit info`");
+
+  const Solution& best = minima[0].solution;
+  Material material;
+  material.model = recipe.model;
+  material.channels = measurement->channels.names;
+  material.wavelengths_nm = measurement->channels.wavelengths_nm;
+  const Uncertainty uncertainty = EstimateUncertainty(problem, layout, best.u, GroupByIncidence(*measurement), &pool);
+  material.degenerate = uncertainty.degenerate;
+  Report(layout, best.u, uncertainty, &material);
+  material.remarks = measurement->remarks;
+  material.samples_read = read;
+  material.samples_used = samples.size();
+  for (int r = 0; r < kSetAsideReasons; ++r) {
+    const auto reason = static_cast<SetAsideReason>(r);
+    if (measurement->set_aside[reason] > 0)
+      material.set_aside[std::string(Key(reason))] = measurement->set_aside[reason];
+  }
+  material.errors = ErrorsUnderAllMetrics(problem, samples, layout, best.u, &pool);
+  material.cost = best.cost;
+  for (const DistinctMinimum& minimum : minima) material.minima.push_back(Describe(layout, minimum));
+  material.termination = {best.converged, uncertainty.determined, best.message, best.iterations};
+  material.source = {measurement->source, measurement->sha256, measurement->format, measurement->conventions};
+  material.recipe_name = recipe.name;
+  material.recipe_reason = recipe.reason;
+  material.metric = NameOf(MetricChoices(), recipe.metric);
+  material.weighting = NameOf(WeightingChoices(), recipe.weighting);
+  material.loss = NameOf(LossChoices(), recipe.loss);
+  material.theta_max_deg = RadiansToDegrees(recipe.theta_max);
+  material.timings_s = {{"read", 0.0}, {"report", 0.0}};
+  material.timings_s["fit"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
+  return material;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,32 @@
+// Fits a recipe to a measurement: starts, descents, the best minimum, its uncertainty, and all that a report says of
+// it.
+#pragma once
+
+#include <cstdint>
+
+#include "lobefit/material/material.h"
+#include "lobefit/measurement/measurement.h"
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+
+struct FitOptions {
+  int threads = 1;
+  // Descents on the subsample, from the best-ranked starts.
+  std::size_t starts = 8;
+  std::uint64_t seed = 1;
+  // Samples of the subsample on which starts are ranked and descended; fits with at most three times as many use all
+  // samples throughout.
+  std::size_t subsample = 2000;
+};
+
+// What the automatic recipe needs to know.
+MeasurementTraits TraitsOf(const Measurement& measurement);
+
+// Sets samples aside that the recipe cannot take (counted in the measurement and the result), then fits. The result
+// does not depend on the number of threads. Throws InputError where there is nothing to fit: no sample left, fewer
+// values than free parameters. A fit that did not converge or is not determined is returned, and says so in
+// Material::termination.
+Material Fit(const Recipe& recipe, const FitOptions& options, Measurement* measurement);
+
+}  // namespace lobefit

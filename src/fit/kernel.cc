@@ -1,0 +1,434 @@
+#include "lobefit/fit/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lobefit/core/ggx_lobe.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lobefit/fit/kernel.cc"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// After highway.h:
+#include <hwy/contrib/math/math-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace lobefit {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D64 = hn::ScalableTag<double>;
+using V64 = hn::Vec<D64>;
+
+HWY_INLINE V64 Load(const double* p) { return hn::LoadU(D64(), p); }
+HWY_INLINE V64 Constant(double x) { return hn::Set(D64(), x); }
+
+// Cube root by exp and log with one step of Newton's method; odd, 0 at 0.
+HWY_INLINE V64 CubeRoot(V64 x) {
+  const D64 d;
+  const V64 magnitude = hn::Max(hn::Abs(x), Constant(1e-300));
+  V64 y = hn::Exp(d, hn::Mul(hn::Log(d, magnitude), Constant(1.0 / 3)));
+  const V64 y2 = hn::Mul(y, y);
+  y = hn::Sub(y, hn::Div(hn::Sub(hn::Mul(y2, y), magnitude), hn::Mul(Constant(3), y2)));
+  return hn::IfThenElse(hn::Eq(x, hn::Zero(d)), hn::Zero(d), hn::CopySign(y, x));
+}
+
+// T(f) and, where `slope` is not null, dT/df.
+HWY_INLINE V64 ApplyTransform(Transform transform, V64 f, V64 cos_i, V64 target, V64* slope) {
+  const D64 d;
+  const V64 v = hn::Mul(f, cos_i);
+  switch (transform) {
+    case Transform::kLog1p:
+      if (slope != nullptr) *slope = hn::Div(cos_i, hn::Add(Constant(1), v));
+      return hn::Log1p(d, v);
+    case Transform::kCubeRoot: {
+      const V64 root = CubeRoot(v);
+      if (slope != nullptr)
+        *slope = hn::Div(cos_i, hn::Mul(Constant(3), hn::Max(hn::Mul(root, root), Constant(1e-200))));
+      return root;
+    }
+    case Transform::kRelative: {
+      const V64 inverse = hn::Div(Constant(1), target);
+      if (slope != nullptr) *slope = inverse;
+      return hn::Mul(f, inverse);
+    }
+    case Transform::kLinear:
+      break;
+  }
+  if (slope != nullptr) *slope = cos_i;
+  return v;
+}
+
+void TransformArrays(int transform, const double* f_r, const double* cos_i, std::size_t count, double* target) {
+  const std::size_t lanes = hn::Lanes(D64());
+  double pad_f[hn::MaxLanes(D64())] = {}, pad_c[hn::MaxLanes(D64())] = {}, out[hn::MaxLanes(D64())];
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const std::size_t n = std::min(lanes, count - i);
+    for (std::size_t k = 0; k < n; ++k) pad_f[k] = f_r[i + k];
+    for (std::size_t k = 0; k < n; ++k) pad_c[k] = cos_i[i + k];
+    const V64 one = Constant(1);
+    hn::StoreU(ApplyTransform(static_cast<Transform>(transform), Load(pad_f), Load(pad_c), one, nullptr), D64(), out);
+    for (std::size_t k = 0; k < n; ++k) target[i + k] = out[k];
+  }
+}
+
+// Fresnel factor of a channel: schlick ? f0 + (1 - f0) p5 : scale.
+HWY_INLINE V64 FresnelFactor(bool schlick, double amplitude, V64 p5) {
+  return schlick ? hn::MulAdd(Constant(1 - amplitude), p5, Constant(amplitude)) : Constant(amplitude);
+}
+
+// p5 = (1 - cos_d)^5 for n values (n a multiple of the lanes).
+void SchlickArrays(const double* cos_d, std::size_t n, double* p5) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
+    const V64 x = hn::Sub(Constant(1), Load(cos_d + i));
+    const V64 x2 = hn::Mul(x, x);
+    hn::StoreU(hn::Mul(hn::Mul(x2, x2), x), D64(), p5 + i);
+  }
+}
+
+// to[k] = sum_j jacobian[j][k] from[j], arrays of n with the given strides.
+void ContractArrays(const double* from, const double* jacobian, std::size_t columns, std::size_t n, std::size_t stride,
+                    double* to) {
+  for (std::size_t k = 0; k < columns; ++k) {
+    for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
+      V64 sum = hn::Zero(D64());
+      for (std::size_t j = 0; j < 5; ++j)
+        sum = hn::MulAdd(Constant(jacobian[j * columns + k]), Load(from + j * stride + i), sum);
+      hn::StoreU(sum, D64(), to + k * stride + i);
+    }
+  }
+}
+
+// f += specular * Fresnel factor.
+void AddLobeArrays(const double* specular, const double* p5, bool schlick, double amplitude, std::size_t n, double* f) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
+    const V64 factor = FresnelFactor(schlick, amplitude, Load(p5 + i));
+    hn::StoreU(hn::MulAdd(Load(specular + i), factor, Load(f + i)), D64(), f + i);
+  }
+}
+
+// residual = sqrt_weight (T(f) - target), slope = sqrt_weight dT/df (null: not wanted).
+void ResidualArrays(int transform, const double* f, const double* cos_i, const double* target,
+                    const double* sqrt_weight, std::size_t n, double* residual, double* slope) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
+    V64 g = hn::Zero(D64());
+    const V64 w = Load(sqrt_weight + i), t = Load(target + i);
+    const V64 value = ApplyTransform(static_cast<Transform>(transform), Load(f + i), Load(cos_i + i), t,
+                                     slope != nullptr ? &g : nullptr);
+    const V64 reference = static_cast<Transform>(transform) == Transform::kRelative ? Constant(1) : t;
+    hn::StoreU(hn::Mul(w, hn::Sub(value, reference)), D64(), residual + i);
+    if (slope != nullptr) hn::StoreU(hn::Mul(w, g), D64(), slope + i);
+  }
+}
+
+// Shape columns of one lobe and channel: to[k] = slope * Fresnel factor * gradient[k].
+void ShapeColumnArrays(const double* slope, const double* p5, bool schlick, double amplitude, const double* gradient,
+                       std::size_t columns, std::size_t n, std::size_t stride, double* to) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
+    const V64 factor = hn::Mul(Load(slope + i), FresnelFactor(schlick, amplitude, Load(p5 + i)));
+    for (std::size_t k = 0; k < columns; ++k) {
+      hn::StoreU(hn::Mul(factor, Load(gradient + k * stride + i)), D64(), to + k * stride + i);
+    }
+  }
+}
+
+// Amplitude column: slope * specular * (schlick ? 1 - p5 : 1).
+void AmplitudeColumnArrays(const double* slope, const double* p5, bool schlick, const double* specular, std::size_t n,
+                           double* to) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
+    V64 value = hn::Mul(Load(slope + i), Load(specular + i));
+    if (schlick) value = hn::Mul(value, hn::Sub(Constant(1), Load(p5 + i)));
+    hn::StoreU(value, D64(), to + i);
+  }
+}
+
+void ScaleArrays(const double* from, double factor, std::size_t n, double* to) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64()))
+    hn::StoreU(hn::Mul(Constant(factor), Load(from + i)), D64(), to + i);
+}
+
+// Adds the upper triangle of the Gram matrix of `columns` arrays to `gram`, row by row.
+void GramArrays(const double* columns, std::size_t count, std::size_t n, std::size_t stride, double* gram) {
+  const D64 d;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* a = columns + i * stride;
+    std::size_t j = i;
+    for (; j + 4 <= count; j += 4) {
+      const double* b = columns + j * stride;
+      V64 s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0;
+      for (std::size_t k = 0; k < n; k += hn::Lanes(d)) {
+        const V64 x = Load(a + k);
+        s0 = hn::MulAdd(x, Load(b + k), s0);
+        s1 = hn::MulAdd(x, Load(b + stride + k), s1);
+        s2 = hn::MulAdd(x, Load(b + 2 * stride + k), s2);
+        s3 = hn::MulAdd(x, Load(b + 3 * stride + k), s3);
+      }
+      *gram++ += hn::GetLane(hn::SumOfLanes(d, s0));
+      *gram++ += hn::GetLane(hn::SumOfLanes(d, s1));
+      *gram++ += hn::GetLane(hn::SumOfLanes(d, s2));
+      *gram++ += hn::GetLane(hn::SumOfLanes(d, s3));
+    }
+    for (; j < count; ++j) {
+      const double* b = columns + j * stride;
+      V64 s0 = hn::Zero(d);
+      for (std::size_t k = 0; k < n; k += hn::Lanes(d)) s0 = hn::MulAdd(Load(a + k), Load(b + k), s0);
+      *gram++ += hn::GetLane(hn::SumOfLanes(d, s0));
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lobefit
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lobefit {
+namespace {
+
+HWY_EXPORT(TransformArrays);
+HWY_EXPORT(SchlickArrays);
+HWY_EXPORT(ContractArrays);
+HWY_EXPORT(AddLobeArrays);
+HWY_EXPORT(ResidualArrays);
+HWY_EXPORT(ShapeColumnArrays);
+HWY_EXPORT(AmplitudeColumnArrays);
+HWY_EXPORT(ScaleArrays);
+HWY_EXPORT(GramArrays);
+
+// 256 samples: the columns of one channel of a one-lobe model take 16 KB, half of a first-level cache.
+constexpr std::size_t kBlock = 256;
+
+double Rho(Loss loss, double scale, double s, double* weight) {
+  const double a2 = scale * scale;
+  switch (loss) {
+    case Loss::kHuber: {
+      if (s <= a2) break;
+      const double r = std::sqrt(s);
+      *weight = scale / r;
+      return 2 * scale * r - a2;
+    }
+    case Loss::kCauchy:
+      *weight = 1 / (1 + s / a2);
+      return a2 * std::log1p(s / a2);
+    case Loss::kTukey: {
+      const double t = s < a2 ? 1 - s / a2 : 0;
+      *weight = t * t;
+      return a2 / 3 * (1 - t * t * t);
+    }
+    case Loss::kNone:
+      break;
+  }
+  *weight = 1;
+  return s;
+}
+
+// One block of samples: the model's values, residuals and columns. Arrays of kBlock, padded so that pads add nothing to
+// any sum.
+class Block {
+ public:
+  Block(const KernelSamples& samples, const KernelModel& model, bool gradient)
+      : samples_(samples), model_(model), gradient_(gradient) {
+    const std::size_t lobes = model.lobes.size(), channels = model.channels();
+    specular_.assign(lobes * kBlock, 0);
+    gradients_.assign(gradient ? lobes * 5 * kBlock : 0, 0);
+    contracted_.assign(gradient ? lobes * 5 * kBlock : 0, 0);
+    p5_.assign(kBlock, 0);
+    cos_d_.assign(kBlock, 0);
+    cos_i_.assign(kBlock, 0);
+    sqrt_weight_.assign(kBlock, 1);
+    f_.assign(channels * kBlock, 0);
+    target_.assign(channels * kBlock, 0);
+    residual_.assign(channels * kBlock, 0);
+    slope_.assign(gradient ? channels * kBlock : 0, 0);
+    columns_.assign(gradient ? model.columns() * kBlock : 0, 0);
+  }
+
+  // Values of samples [begin, begin + count), count <= kBlock.
+  void Evaluate(std::size_t begin, std::size_t count) {
+    count_ = count;
+    padded_ = (count + 7) / 8 * 8;  // no target has more than 8 lanes
+    DirectionArrays directions = {};
+    const double** fields[] = {&directions.wi_x, &directions.wi_y, &directions.wi_z,
+                               &directions.wo_x, &directions.wo_y, &directions.wo_z};
+    for (std::size_t k = 0; k < 6; ++k) *fields[k] = samples_.direction[k] + begin;
+    directions.count = count;
+    std::copy_n(directions.wi_z, count, cos_i_.begin());
+    std::fill(cos_i_.begin() + static_cast<std::ptrdiff_t>(count), cos_i_.end(), 0.0);
+    for (std::size_t l = 0; l < model_.lobes.size(); ++l) EvaluateLobe(l, directions);
+    HWY_DYNAMIC_DISPATCH(SchlickArrays)(cos_d_.data(), padded_, p5_.data());
+    for (std::size_t c = 0; c < model_.channels(); ++c) {
+      double* f = f_.data() + c * kBlock;
+      std::fill_n(f, padded_, model_.diffuse.empty() ? 0.0 : model_.diffuse[c] * kInvPi);
+      for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
+        const KernelLobe& lobe = model_.lobes[l];
+        HWY_DYNAMIC_DISPATCH(AddLobeArrays)
+        (specular_.data() + l * kBlock, p5_.data(), lobe.schlick, lobe.amplitude[c], padded_, f);
+      }
+    }
+  }
+
+  // Residuals (and slopes), reweighted by the loss. Returns the sum of rho.
+  double Residuals(std::size_t begin, double* sum_robust_weight) {
+    if (samples_.sqrt_weight != nullptr) std::copy_n(samples_.sqrt_weight + begin, count_, sqrt_weight_.begin());
+    std::fill(sqrt_weight_.begin() + static_cast<std::ptrdiff_t>(count_), sqrt_weight_.end(), 0.0);
+    for (std::size_t c = 0; c < model_.channels(); ++c) {
+      double* target = target_.data() + c * kBlock;
+      std::copy_n(samples_.target[c] + begin, count_, target);
+      std::fill(target + count_, target + padded_, 1.0);
+      HWY_DYNAMIC_DISPATCH(ResidualArrays)
+      (static_cast<int>(model_.transform), f_.data() + c * kBlock, cos_i_.data(), target, sqrt_weight_.data(), padded_,
+       residual_.data() + c * kBlock, gradient_ ? slope_.data() + c * kBlock : nullptr);
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      double s = 0, weight = 1;
+      for (std::size_t c = 0; c < model_.channels(); ++c) s += residual_[c * kBlock + i] * residual_[c * kBlock + i];
+      sum += Rho(model_.loss, model_.loss_scale, s, &weight);
+      *sum_robust_weight += weight;
+      if (model_.loss == Loss::kNone) continue;
+      const double root = std::sqrt(weight);
+      for (std::size_t c = 0; c < model_.channels(); ++c) {
+        residual_[c * kBlock + i] *= root;
+        if (gradient_) slope_[c * kBlock + i] *= root;
+      }
+    }
+    return sum;
+  }
+
+  // Columns of one channel, kBlock apart; the last is the residual.
+  const std::vector<double>& Columns(std::size_t c) {
+    const double* slope = slope_.data() + c * kBlock;
+    double* to = columns_.data();
+    for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
+      const KernelLobe& lobe = model_.lobes[l];
+      HWY_DYNAMIC_DISPATCH(ShapeColumnArrays)
+      (slope, p5_.data(), lobe.schlick, lobe.amplitude[c], contracted_.data() + l * 5 * kBlock, lobe.columns, padded_,
+       kBlock, to);
+      to += lobe.columns * kBlock;
+    }
+    for (std::size_t l = 0; l < model_.lobes.size(); ++l, to += kBlock) {
+      HWY_DYNAMIC_DISPATCH(AmplitudeColumnArrays)
+      (slope, p5_.data(), model_.lobes[l].schlick, specular_.data() + l * kBlock, padded_, to);
+    }
+    if (!model_.diffuse.empty()) {
+      HWY_DYNAMIC_DISPATCH(ScaleArrays)(slope, kInvPi, padded_, to);
+      to += kBlock;
+    }
+    std::copy_n(residual_.data() + c * kBlock, padded_, to);
+    return columns_;
+  }
+
+  std::size_t padded() const { return padded_; }
+  const double* f(std::size_t c) const { return f_.data() + c * kBlock; }
+
+ private:
+  void EvaluateLobe(std::size_t l, const DirectionArrays& directions) {
+    const KernelLobe& lobe = model_.lobes[l];
+    double* specular = specular_.data() + l * kBlock;
+    double* gradients = gradient_ ? gradients_.data() + l * 5 * kBlock : nullptr;
+    // The lobe writes its gradient with a stride of `count`; the last, shorter block is spread to kBlock afterwards.
+    GgxLobe(directions, lobe.shape, lobe.masking, specular, cos_d_.data(), gradients);
+    std::fill(specular + count_, specular + padded_, 0.0);
+    std::fill(cos_d_.begin() + static_cast<std::ptrdiff_t>(count_), cos_d_.end(), 1.0);
+    if (!gradient_) return;
+    for (std::size_t j = 5; j-- > 0 && count_ < kBlock;) {
+      std::copy_backward(gradients + j * count_, gradients + (j + 1) * count_, gradients + j * kBlock + count_);
+      std::fill(gradients + j * kBlock + count_, gradients + j * kBlock + padded_, 0.0);
+    }
+    HWY_DYNAMIC_DISPATCH(ContractArrays)
+    (gradients, lobe.jacobian.data(), lobe.columns, padded_, kBlock, contracted_.data() + l * 5 * kBlock);
+  }
+
+  const KernelSamples& samples_;
+  const KernelModel& model_;
+  const bool gradient_;
+  std::size_t count_ = 0, padded_ = 0;
+  std::vector<double> specular_, gradients_, contracted_, p5_, cos_d_, cos_i_, sqrt_weight_, f_, target_, residual_,
+      slope_, columns_;
+};
+
+}  // namespace
+
+Transform TransformOf(Metric metric) {
+  switch (metric) {
+    case Metric::kCubeRoot:
+      return Transform::kCubeRoot;
+    case Metric::kRelative:
+      return Transform::kRelative;
+    case Metric::kCosineL2:
+    case Metric::kNgan:
+      return Transform::kLinear;
+    case Metric::kLog:
+    case Metric::kLowLog:
+      break;
+  }
+  return Transform::kLog1p;
+}
+
+std::size_t KernelModel::shape_columns() const {
+  std::size_t sum = 0;
+  for (const KernelLobe& lobe : lobes) sum += lobe.columns;
+  return sum;
+}
+
+void TransformMeasured(Transform transform, const double* f_r, const double* cos_theta_i, std::size_t count,
+                       double* target) {
+  if (transform == Transform::kRelative) {
+    std::copy_n(f_r, count, target);
+    return;
+  }
+  HWY_DYNAMIC_DISPATCH(TransformArrays)(static_cast<int>(transform), f_r, cos_theta_i, count, target);
+}
+
+void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gradient, std::size_t begin,
+                std::size_t end, KernelSums* sums) {
+  Block block(samples, model, gradient);
+  const std::size_t columns = model.columns();
+  if (gradient && sums->gram.empty())
+    sums->gram.assign(model.channels(), std::vector<double>(columns * (columns + 1) / 2, 0.0));
+  for (std::size_t i = begin; i < end; i += kBlock) {
+    block.Evaluate(i, std::min(kBlock, end - i));
+    sums->sum_rho += block.Residuals(i, &sums->sum_robust_weight);
+    for (std::size_t c = 0; gradient && c < model.channels(); ++c) {
+      HWY_DYNAMIC_DISPATCH(GramArrays)(block.Columns(c).data(), columns, block.padded(), kBlock, sums->gram[c].data());
+    }
+  }
+}
+
+void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+            std::vector<std::vector<double>>* scores) {
+  const std::size_t shape = model.shape_columns(), residual_column = model.columns() - 1,
+                    linear = residual_column - shape;
+  scores->assign(shape + linear * model.channels(), std::vector<double>(end - begin, 0.0));
+  Block block(samples, model, true);
+  double unused = 0;
+  for (std::size_t i = begin; i < end; i += kBlock) {
+    const std::size_t count = std::min(kBlock, end - i);
+    block.Evaluate(i, count);
+    block.Residuals(i, &unused);
+    for (std::size_t c = 0; c < model.channels(); ++c) {
+      const std::vector<double>& columns = block.Columns(c);
+      const double* residual = columns.data() + residual_column * kBlock;
+      for (std::size_t j = 0; j < residual_column; ++j) {
+        std::vector<double>& to = (*scores)[j < shape ? j : j + c * linear];
+        for (std::size_t k = 0; k < count; ++k) to[i - begin + k] += columns[j * kBlock + k] * residual[k];
+      }
+    }
+  }
+}
+
+void ModelValues(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+                 std::vector<std::vector<double>>* values) {
+  values->assign(model.channels(), std::vector<double>(end - begin));
+  Block block(samples, model, false);
+  for (std::size_t i = begin; i < end; i += kBlock) {
+    const std::size_t count = std::min(kBlock, end - i);
+    block.Evaluate(i, count);
+    for (std::size_t c = 0; c < model.channels(); ++c) {
+      std::copy_n(block.f(c), count, (*values)[c].begin() + static_cast<std::ptrdiff_t>(i - begin));
+    }
+  }
+}
+
+}  // namespace lobefit
+#endif  // HWY_ONCE

@@ -1,0 +1,75 @@
+// The inner loop of a fit: streams samples in SIMD blocks and keeps only sums, so that no residual and no Jacobian is
+// ever stored. Includes neither Ceres nor Eigen (platform: they must not meet instruction-set flags).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lobefit/core/model.h"
+#include "lobefit/core/off_center.h"
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+
+// How a value v = f cos_theta_i or f becomes a residual against the measured one.
+enum class Transform { kLog1p, kCubeRoot, kLinear, kRelative };
+
+Transform TransformOf(Metric metric);
+
+// Samples as the loop reads them. target[c][i]: transformed measured value (kRelative: the measured f_r itself).
+struct KernelSamples {
+  const double* direction[6];  // wi_x, wi_y, wi_z, wo_x, wo_y, wo_z
+  std::vector<const double*> target;
+  const double* sqrt_weight = nullptr;  // null: all 1
+  std::size_t count = 0;
+};
+
+// target = T(measured), by the same instructions as the loop, so that a perfect model has residuals of exactly zero.
+void TransformMeasured(Transform transform, const double* f_r, const double* cos_theta_i, std::size_t count,
+                       double* target);
+
+struct KernelLobe {
+  SlopeCoordinates shape;
+  Masking masking = Masking::kSmithSeparable;
+  bool schlick = true;
+  std::vector<double> amplitude;  // f0 or scale, a channel
+  // d(slope coordinates) / d(solver's shape coordinates), 5 x columns row-major.
+  std::size_t columns = 0;
+  std::vector<double> jacobian;
+};
+
+struct KernelModel {
+  std::vector<KernelLobe> lobes;
+  std::vector<double> diffuse;  // albedo a channel; empty: no diffuse part
+  Transform transform = Transform::kLog1p;
+  Loss loss = Loss::kNone;
+  double loss_scale = 1;
+
+  std::size_t channels() const { return lobes.front().amplitude.size(); }
+  std::size_t shape_columns() const;
+  // Columns of one channel: shape coordinates of all lobes, one amplitude a lobe, the diffuse albedo, the residual.
+  std::size_t columns() const { return shape_columns() + lobes.size() + (diffuse.empty() ? 0 : 1) + 1; }
+};
+
+// Sums over samples. gram[c] is the upper triangle, row by row, of the Gram matrix of channel c's columns.
+struct KernelSums {
+  double sum_rho = 0;  // sum over samples of rho(sum over channels of weighted squared residuals)
+  std::vector<std::vector<double>> gram;
+  double sum_robust_weight = 0;  // sum of rho'; equals the count without a loss
+};
+
+// Adds the samples [begin, end) to `sums`; without `gradient` only sum_rho. The order of additions depends on begin and
+// end only.
+void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gradient, std::size_t begin,
+                std::size_t end, KernelSums* sums);
+
+// Rows of J^T r a sample, for sandwich estimates: scores[j][i - begin] with j over shape columns, then [channel][linear
+// columns].
+void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+            std::vector<std::vector<double>>* scores);
+
+// f_r of the model: values[c][i - begin].
+void ModelValues(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+                 std::vector<std::vector<double>>* values);
+
+}  // namespace lobefit
