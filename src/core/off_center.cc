@@ -6,6 +6,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/core/canonical_axes.h"
 #include "lobefit/core/principal_axes.h"
 #include "lobefit/core/weighted_form.h"
 
@@ -59,34 +60,6 @@ struct SlopeRoot {
   double slope_x, slope_y, a, b, c;
 };
 
-// The canonical axes of A0: x, y, z with length_y <= length_x <= length_z and turn * A0 = diag(length) * axis.
-struct CanonicalAxes {
-  std::array<double, 3> length;
-  std::array<Vec3, 3> axis, turn;
-  bool degenerate;
-};
-
-void Flip(CanonicalAxes* axes, std::size_t k) {
-  axes->axis[k] = -axes->axis[k];
-  axes->turn[k] = -axes->turn[k];
-}
-
-// Where lengths coincide the axes are a free choice: the one with the angles that are not determined at 0.
-void ChooseDegenerateAxes(bool same_xy, bool same_xz, CanonicalAxes* axes) {
-  auto& [x, y, z] = axes->axis;
-  if (same_xy && same_xz) {
-    x = {1, 0, 0};
-    y = {0, 1, 0};
-    z = {0, 0, 1};
-  } else if (same_xy) {
-    x = std::hypot(z.x, z.z) > 0 ? Normalized(Vec3{z.z, 0, -z.x}) : Vec3{1, 0, 0};
-    y = Cross(z, x);
-  } else if (std::abs(y.z) < 1) {
-    z = Normalized(Vec3{-y.z * y.x, -y.z * y.y, y.x * y.x + y.y * y.y});
-    x = Cross(y, z);
-  }
-}
-
 CanonicalAxes FindCanonicalAxes(const SlopeRoot& root) {
   // The longer of the two slope rows first, made by a Givens turn that subtracts nothing: then the rows, scaled to unit
   // length, are well conditioned for any correlation.
@@ -100,36 +73,7 @@ CanonicalAxes FindCanonicalAxes(const SlopeRoot& root) {
     first_turn = {{{{cos, sin, 0}, {sin, -cos, 0}, {0, 0, 1}}}};
   }
   const PrincipalAxes found = FindPrincipalAxes(rows);
-  const Mat3 turn = found.rotation * first_turn;
-  CanonicalAxes result = {{found.length[1], found.length[2], found.length[0]},
-                          {found.axes.row[1], found.axes.row[2], found.axes.row[0]},
-                          {turn.row[1], turn.row[2], turn.row[0]},
-                          false};
-  constexpr double kSame = 32 * std::numeric_limits<double>::epsilon();
-  const bool same_xy = result.length[0] - result.length[1] <= kSame * result.length[0];
-  const bool same_xz = result.length[2] - result.length[0] <= kSame * result.length[2];
-  result.degenerate = same_xy || same_xz;
-  if (result.degenerate) ChooseDegenerateAxes(same_xy, same_xz, &result);
-
-  auto& [x, y, z] = result.axis;
-  if (z.z < 0) Flip(&result, 2);
-  if (Dot(Cross(x, y), z) < 0) Flip(&result, 1);
-  if (x.x < 0 || (x.x == 0 && x.y > 0)) {
-    Flip(&result, 0);
-    Flip(&result, 1);
-  }
-  return result;
-}
-
-Ellipsoid EllipsoidFromAxes(const CanonicalAxes& axes) {
-  const auto& [x, y, z] = axes.axis;
-  Ellipsoid e;
-  e.alpha_x = axes.length[0] / axes.length[2];
-  e.alpha_y = axes.length[1] / axes.length[2];
-  e.theta_x = std::atan2(0.0 - y.z, z.z);  // 0.0 - y.z, not -y.z: no negative zero in a report
-  e.theta_y = std::atan2(x.z, std::hypot(y.z, z.z));
-  e.theta_z = std::atan2(0.0 - x.y, x.x);
-  return e;
+  return ToCanonicalAxes({found.length, found.axes, found.rotation * first_turn});
 }
 
 // One column of the Jacobian from E = R dM R^T (elements xx, yy, zz, yz, xz, xy): M = R^T diag(length^2) R moves by
