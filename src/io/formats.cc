@@ -7,6 +7,7 @@ const std::vector<Format>& Formats() {
       {"rgl", "RGL/EPFL .bsdf tensor file", IsRgl, ReadRgl},
       {"merl", "MERL .binary table", IsMerl, ReadMerl},
       {"mbsdf", "MDL .mbsdf isotropic table", IsMbsdf, ReadMbsdf},
+      {"bsdf-xml", "Radiance/WINDOW BSDF-XML: angle-basis matrix or tensor tree", IsBsdfXml, ReadBsdfXml},
       {"zemax", "Zemax BSDF Data Interchange text", IsZemax, ReadZemax},
       {"lighttools", "LightTools .bsdf text", IsLightTools, ReadLightTools},
       {"fred", "FRED tabular scatter text", IsFred, ReadFred},

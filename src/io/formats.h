@@ -15,6 +15,8 @@ bool IsMerl(std::string_view bytes);
 Measurement ReadMerl(const InputFile& file, const ReadOptions& options);
 bool IsRgl(std::string_view bytes);
 Measurement ReadRgl(const InputFile& file, const ReadOptions& options);
+bool IsBsdfXml(std::string_view bytes);
+Measurement ReadBsdfXml(const InputFile& file, const ReadOptions& options);
 bool IsZemax(std::string_view bytes);
 Measurement ReadZemax(const InputFile& file, const ReadOptions& options);
 bool IsLightTools(std::string_view bytes);
