@@ -1,0 +1,80 @@
+#include "recipe_options.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+#include "lobefit/fit/fit.h"
+#include "lobefit/math/vec.h"
+
+namespace lobefit {
+namespace {
+
+// Beside the installed program, else in the source tree that built it.
+std::filesystem::path RecipeFolder() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    const std::filesystem::path installed = program.parent_path().parent_path() / "share" / "lobefit" / "fits";
+    if (std::filesystem::is_directory(installed, error)) return installed;
+  }
+  return LOBEFIT_SOURCE_FITS;
+}
+
+template <class Enum>
+void Override(const std::string& text, const char* option, const std::vector<Choice<Enum>>& choices, Enum* value) {
+  if (text.empty()) return;
+  const Choice<Enum>* choice = Find(choices, text);
+  if (choice == nullptr) {
+    const std::vector<std::string> names = Names(choices);
+    throw UsageError(
+        fmt::format("{} '{}' is unknown{}; allowed: {}", option, Excerpt(text), DidYouMean(text, names), Join(names)));
+  }
+  *value = choice->value;
+}
+
+}  // namespace
+
+Recipe LoadRecipe(const std::string& name_or_path) {
+  std::error_code error;
+  if (std::filesystem::exists(name_or_path, error)) return ReadRecipe(name_or_path);
+  const std::filesystem::path folder = RecipeFolder();
+  const std::filesystem::path named = folder / (name_or_path + ".toml");
+  if (name_or_path.find('/') == std::string::npos && std::filesystem::exists(named, error)) return ReadRecipe(named);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  throw InputError(fmt::format("recipe '{}' is neither a file nor a recipe of {}{}; allowed: auto, {}",
+                               Excerpt(name_or_path), folder.string(), DidYouMean(name_or_path, names), Join(names)));
+}
+
+void RecipeOptions::AddTo(CLI::App* app) {
+  const std::string group = "What to fit";
+  app->add_option("--recipe", recipe_,
+                  "a recipe by name or a .toml file; 'auto' (default) takes what the measurement can determine")
+      ->group(group);
+  app->add_option("--metric", metric_, "overrides the recipe: " + Join(Names(MetricChoices())))->group(group);
+  app->add_option("--weighting", weighting_, "overrides the recipe: " + Join(Names(WeightingChoices())))->group(group);
+  app->add_option("--theta-max", theta_max_deg_,
+                  "overrides the recipe: limit on both polar angles, degrees (default 80)")
+      ->check(CLI::Range(0.1, 90.0))
+      ->group(group);
+}
+
+Recipe RecipeOptions::Choose(const Measurement& measurement) const {
+  const MeasurementTraits traits = TraitsOf(measurement);
+  Recipe recipe = recipe_ == "auto" ? AutomaticRecipe(traits) : LoadRecipe(recipe_);
+  recipe.plane_azimuth = traits.plane_azimuth;
+  Override(metric_, "--metric", MetricChoices(), &recipe.metric);
+  Override(weighting_, "--weighting", WeightingChoices(), &recipe.weighting);
+  if (theta_max_deg_ > 0) recipe.theta_max = DegreesToRadians(theta_max_deg_);
+  return recipe;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,27 @@
+// The recipe of a fit from the command line: by name or file, or automatic, with single choices overridden.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "lobefit/measurement/measurement.h"
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+
+class RecipeOptions {
+ public:
+  void AddTo(CLI::App* app);
+  // Throws UsageError and InputError.
+  Recipe Choose(const Measurement& measurement) const;
+
+ private:
+  std::string recipe_ = "auto", metric_, weighting_;
+  double theta_max_deg_ = 0;
+};
+
+// A recipe file, or a recipe of the library by its name ("ellipsoid"). Throws InputError that lists the names.
+Recipe LoadRecipe(const std::string& name_or_path);
+
+}  // namespace lobefit

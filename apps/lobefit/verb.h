@@ -1,0 +1,28 @@
+// A verb of the program: its name, one line for the help, and how it adds its options and runs.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace lobefit {
+
+// Options that every verb has.
+struct CommonOptions {
+  int threads = 0;  // 0: as many as the process may use
+  bool json = false;
+  std::string command;  // the whole command line, for the record in results
+
+  int Threads() const;
+};
+
+// Adds options to `app` and returns what runs the verb; the result is the exit code.
+using VerbSetup = std::function<int()> (*)(CLI::App* app, CommonOptions* common);
+
+std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common);
+std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common);
+std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common);
+std::function<int()> SetUpSynth(CLI::App* app, CommonOptions* common);
+
+}  // namespace lobefit

@@ -1,0 +1,105 @@
+// lobefit fit: a measurement file becomes NAME.material.json and NAME.report.png.
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "measurement_options.h"
+#include "recipe_options.h"
+#include "summary.h"
+#include "verb.h"
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/fit/fit.h"
+#include "lobefit/material/json.h"
+#include "lobefit/report/report.h"
+
+namespace lobefit {
+namespace {
+
+struct FitVerb {
+  MeasurementOptions measurement;
+  RecipeOptions recipe;
+  FitOptions fit;
+  std::string file, out = ".", name;
+  bool no_report = false;
+};
+
+double Seconds(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// The result as it is handed over: exit code 4 says that it is not to be trusted.
+int Judge(const Material& material) {
+  if (!material.termination.converged) {
+    std::fprintf(
+        stderr,
+        "lobefit: the fit did not converge (%s); the document is marked; try more --starts or a simpler recipe\n",
+        material.termination.message.c_str());
+    return kExitFit;
+  }
+  if (!material.termination.determined) {
+    std::fprintf(
+        stderr,
+        "lobefit: the measurement does not determine every parameter; the document names them; try a simpler recipe\n");
+    return kExitFit;
+  }
+  return kExitDone;
+}
+
+int RunFit(const FitVerb& verb, const CommonOptions& common) {
+  std::error_code error;
+  const std::filesystem::path folder = verb.out;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw OutputError(
+        fmt::format("{}: cannot be made: {}; choose another folder with --out", verb.out, error.message()));
+
+  auto start = std::chrono::steady_clock::now();
+  Measurement measurement = verb.measurement.Load(verb.file);
+  const double read_s = Seconds(start);
+  FitOptions options = verb.fit;
+  options.threads = common.Threads();
+  Material material = Fit(verb.recipe.Choose(measurement), options, &measurement);
+  material.command = common.command;
+  material.timings_s["read"] = read_s;
+
+  const std::string name = verb.name.empty() ? std::filesystem::path(verb.file).stem().string() : verb.name;
+  const std::filesystem::path document = folder / (name + ".material.json"), picture = folder / (name + ".report.png");
+  // The document first: it is kept even where drawing fails.
+  WriteMaterial(material, document);
+  if (!verb.no_report) {
+    start = std::chrono::steady_clock::now();
+    ReportOptions report;
+    report.threads = options.threads;
+    WriteReportPng(material, measurement, picture, report);
+    material.timings_s["report"] = Seconds(start);
+    WriteMaterial(material, document);
+  }
+  if (common.json) {
+    fmt::print("{}", ToJson(material));
+  } else {
+    fmt::print("{}Result:  {}\n", Summary(material), document.string());
+    if (!verb.no_report) fmt::print("Picture: {}\n", picture.string());
+  }
+  return Judge(material);
+}
+
+}  // namespace
+
+std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common) {
+  auto verb = std::make_shared<FitVerb>();
+  app->add_option("FILE", verb->file, "measurement file")->required();
+  app->add_option("--out", verb->out, "folder of the results (default: the current one)");
+  app->add_option("--name", verb->name, "NAME of the results (default: the file's name without its ending)");
+  app->add_flag("--no-report", verb->no_report, "write no picture");
+  app->add_option("--starts", verb->fit.starts, "descents from the best-ranked starts (default 8)")
+      ->check(CLI::Range(1, 100000));
+  app->add_option("--seed", verb->fit.seed, "seed of the subsample on which starts are ranked (default 1)");
+  verb->recipe.AddTo(app);
+  verb->measurement.AddTo(app);
+  return [=] { return RunFit(*verb, *common); };
+}
+
+}  // namespace lobefit

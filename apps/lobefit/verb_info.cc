@@ -1,0 +1,121 @@
+// lobefit info: what a measurement file holds.
+#include <algorithm>
+#include <memory>
+
+#include "measurement_options.h"
+#include "verb.h"
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "lobefit/base/text.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/measurement/incidence.h"
+
+namespace lobefit {
+namespace {
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  void Add(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+};
+
+struct Description {
+  Incidences incidences;
+  Range theta_i, theta_o;
+  std::vector<Range> values;
+  bool in_plane;
+};
+
+Description Describe(const Measurement& measurement) {
+  const Samples& samples = measurement.samples;
+  Description description = {
+      GroupByIncidence(measurement), {}, {}, std::vector<Range>(samples.values.size()), IsInPlane(samples)};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    description.theta_i.Add(samples.wi_z[i]);
+    description.theta_o.Add(samples.wo_z[i]);
+  }
+  for (Range* range : {&description.theta_i, &description.theta_o}) {
+    *range = {RadiansToDegrees(std::acos(std::min(1.0, range->high))),
+              RadiansToDegrees(std::acos(std::min(1.0, range->low)))};
+  }
+  for (std::size_t c = 0; c < samples.values.size(); ++c) {
+    for (const double value : samples.values[c]) description.values[c].Add(value);
+  }
+  return description;
+}
+
+std::string ToJson(const Measurement& measurement, const Description& description) {
+  nlohmann::ordered_json set_aside = nlohmann::ordered_json::object(), directions = nlohmann::ordered_json::array();
+  for (int r = 0; r < kSetAsideReasons; ++r) {
+    const auto reason = static_cast<SetAsideReason>(r);
+    if (measurement.set_aside[reason] > 0) set_aside[std::string(Key(reason))] = measurement.set_aside[reason];
+  }
+  for (const Vec3& wi : description.incidences.wi) {
+    directions.push_back(
+        {{"theta_i_deg", RadiansToDegrees(PolarAngle(wi))}, {"phi_i_deg", RadiansToDegrees(Azimuth(wi))}});
+  }
+  nlohmann::ordered_json values = nlohmann::ordered_json::array();
+  for (const Range& range : description.values) values.push_back({range.low, range.high});
+  const nlohmann::ordered_json json = {{"file", measurement.source},
+                                       {"sha256", measurement.sha256},
+                                       {"format", measurement.format},
+                                       {"samples", measurement.samples.size()},
+                                       {"set_aside", set_aside},
+                                       {"channels", measurement.channels.names},
+                                       {"wavelengths_nm", measurement.channels.wavelengths_nm},
+                                       {"incidences", description.incidences.wi.size()},
+                                       {"incident_directions", directions},
+                                       {"isotropic", measurement.isotropic},
+                                       {"in_plane", description.in_plane},
+                                       {"theta_i_deg", {description.theta_i.low, description.theta_i.high}},
+                                       {"theta_o_deg", {description.theta_o.low, description.theta_o.high}},
+                                       {"values", values},
+                                       {"conventions", measurement.conventions},
+                                       {"remarks", measurement.remarks}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string ToText(const Measurement& measurement, const Description& description) {
+  std::string text = fmt::format("{}: {}\n", measurement.source, measurement.format);
+  text += fmt::format("  samples      {}\n", measurement.samples.size());
+  for (int r = 0; r < kSetAsideReasons; ++r) {
+    const auto reason = static_cast<SetAsideReason>(r);
+    if (measurement.set_aside[reason] > 0)
+      text += fmt::format("  set aside    {} {}\n", measurement.set_aside[reason], Words(reason));
+  }
+  text += fmt::format("  channels     {}\n", Join(measurement.channels.names, " "));
+  for (std::size_t c = 0; c < description.values.size() && c < 4; ++c) {
+    text += fmt::format("  f_r {:<8} {:.4g} to {:.4g} 1/sr\n", measurement.channels.names[c], description.values[c].low,
+                        description.values[c].high);
+  }
+  text += fmt::format("  incidences   {}{}\n", description.incidences.wi.size(),
+                      measurement.isotropic ? " polar angles, in bins of one degree" : " directions");
+  text += fmt::format("  theta_i      {:.4g} to {:.4g} degrees\n", description.theta_i.low, description.theta_i.high);
+  text += fmt::format("  theta_o      {:.4g} to {:.4g} degrees\n", description.theta_o.low, description.theta_o.high);
+  text += fmt::format("  isotropic    {}\n",
+                      measurement.isotropic ? "yes, by construction of the format" : "not by construction");
+  if (description.in_plane) text += "  in plane     all samples lie in one plane through the normal\n";
+  for (const auto& [option, value] : measurement.conventions) text += fmt::format("  {:<12} {}\n", option, value);
+  for (const std::string& remark : measurement.remarks) text += "  note         " + remark + '\n';
+  return text;
+}
+
+}  // namespace
+
+std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
+  auto options = std::make_shared<MeasurementOptions>();
+  auto file = std::make_shared<std::string>();
+  app->add_option("FILE", *file, "measurement file")->required();
+  options->AddTo(app);
+  return [=] {
+    const Measurement measurement = options->Load(*file);
+    const Description description = Describe(measurement);
+    fmt::print("{}\n", common->json ? ToJson(measurement, description) : ToText(measurement, description));
+    return 0;
+  };
+}
+
+}  // namespace lobefit

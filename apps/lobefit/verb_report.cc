@@ -1,0 +1,54 @@
+// lobefit report: draws a fitted material against its measurement again.
+#include <filesystem>
+#include <memory>
+
+#include "measurement_options.h"
+#include "verb.h"
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/material/json.h"
+#include "lobefit/math/vec.h"
+#include "lobefit/report/report.h"
+
+namespace lobefit {
+namespace {
+
+struct ReportVerb {
+  MeasurementOptions measurement;
+  std::string material, file, out;
+};
+
+int RunReport(const ReportVerb& verb, const CommonOptions& common) {
+  const Material material = ReadMaterial(verb.material);
+  Measurement measurement = verb.measurement.Load(verb.file);
+  // The picture shows what was fitted.
+  Selection limit;
+  limit.theta_max = DegreesToRadians(material.theta_max_deg);
+  Apply(limit, &measurement);
+  std::filesystem::path picture = verb.out;
+  if (picture.empty()) {
+    std::string name = std::filesystem::path(verb.material).filename().string();
+    const std::string ending = ".material.json";
+    if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+    picture = std::filesystem::path(verb.material).parent_path() / (name + ".report.png");
+  }
+  ReportOptions options;
+  options.threads = common.Threads();
+  WriteReportPng(material, measurement, picture, options);
+  fmt::print("Picture: {}\n", picture.string());
+  return kExitDone;
+}
+
+}  // namespace
+
+std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
+  auto verb = std::make_shared<ReportVerb>();
+  app->add_option("MATERIAL", verb->material, "a *.material.json")->required();
+  app->add_option("MEASUREMENT", verb->file, "the measurement file that it was fitted to")->required();
+  app->add_option("--out", verb->out, "the picture (default: NAME.report.png beside the material)");
+  verb->measurement.AddTo(app);
+  return [=] { return RunReport(*verb, *common); };
+}
+
+}  // namespace lobefit
