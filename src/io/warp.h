@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "lobefit/math/vec.h"
@@ -22,9 +23,16 @@ class BilinearWarp {
   // The uniform point that Sample sends to `x`; *pdf is the density at x.
   Vec2 Invert(const Vec2& x, double* pdf) const;
 
+  // A warp and its share in a mixture of densities of equal size, as loaders interpolate between tabulated directions.
+  struct Part {
+    const BilinearWarp* warp;
+    double share;
+  };
+  static Vec2 Invert(std::span<const Part> parts, const Vec2& x, double* pdf);
+
  private:
-  // Inverts the integral of the linear function from a (at 0) to b (at 1) on [0, 1].
-  static double InvertLinear(double a, double b, double integral);
+  template <class Tables>
+  static Vec2 InvertIn(const Tables& tables, std::size_t width, std::size_t height, const Vec2& x, double* pdf);
 
   std::size_t width_, height_;
   std::vector<double> data_, conditional_, marginal_;
