@@ -17,9 +17,9 @@ double ExpSquare(double x) {
   return e + e * rest;
 }
 
-// sqrt(2 pi x) exp(-x) I_n(x), mu = 4 n^2, by the large-argument expansion (Abramowitz and Stegun 9.7.1); x >= 25.
-double HankelSum(double mu, double x) {
-  double term = 1, sum = 1;
+// sqrt(2 pi x) exp(-x) I_n(x) - 1, mu = 4 n^2, by the large-argument expansion (Abramowitz and Stegun 9.7.1); x >= 25.
+double HankelSumLessOne(double mu, double x) {
+  double term = 1, sum = 0;
   for (int j = 1; j < 60; ++j) {
     const double odd = 2 * j - 1;
     const double next = -term * (mu - odd * odd) / (8 * j * x);
@@ -71,10 +71,11 @@ ScaledBesselI BesselIScaled(double x) {
   const double a = std::fabs(x);
   ScaledBesselI result{};
   if (a == 0) {
-    result = {1, 0, 0};
+    result = {1, 0, 0, 1};
   } else if (a >= 25) {
     const double factor = 1 / std::sqrt(2 * kPi * a);
-    result = {factor * HankelSum(0, a), factor * HankelSum(4, a), factor * HankelSum(16, a)};
+    const double h0 = HankelSumLessOne(0, a), h1 = HankelSumLessOne(4, a), h2 = HankelSumLessOne(16, a);
+    result = {factor + factor * h0, factor + factor * h1, factor + factor * h2, factor * (h0 - h1)};
   } else {
     // Miller: downward recurrence from an order where I_n is negligible, scaled by exp(x) = I_0 + 2 sum I_n. All terms
     // are positive.
@@ -94,7 +95,7 @@ ScaledBesselI BesselIScaled(double x) {
       }
     }
     sum += current;
-    result = {current / sum, upper / sum, result.i2 / sum};
+    result = {current / sum, upper / sum, result.i2 / sum, (current - upper) / sum};
   }
   if (x < 0) result.i1 = -result.i1;
   return result;
@@ -103,8 +104,20 @@ ScaledBesselI BesselIScaled(double x) {
 void SphericalBesselRatios(double k, int l_max, std::vector<double>* rho, std::vector<double>* derivative) {
   rho->assign(l_max + 1, 0.0);
   if (derivative != nullptr) derivative->assign(l_max + 1, 0.0);
+  if (k > 25.0 * l_max * l_max / 16 && k > 4) {
+    // Few orders of a large argument: upwards, where an error grows by 1/rho^2 a step, exp(l_max^2 / k) in all.
+    double dr = 0, r = Langevin(k, &dr);
+    for (int l = 1; l <= l_max; ++l) {
+      (*rho)[l] = r;
+      if (derivative != nullptr) (*derivative)[l] = dr;
+      const double q = (2 * l + 1) / k;
+      dr = q / k - dr / (r * r);
+      r = 1 / r - q;
+    }
+    return;
+  }
   // The error of the starting guess 0 shrinks by rho^2 at every step down.
-  const int start = l_max + 30 + static_cast<int>(std::sqrt(160 * k));
+  const int start = l_max + 14 + static_cast<int>(std::sqrt(45 * k));
   double r = 0, dr = 0;
   for (int l = start; l >= 1; --l) {
     const double q = (2 * l + 1) / k;

@@ -75,6 +75,8 @@ TEST(Special, ScaledBessel) {
     ExpectRelative(result.i2, i2, 8);
     EXPECT_EQ(BesselIScaled(-x).i1, -result.i1);
   }
+  ExpectRelative(BesselIScaled(25.1).i0_minus_i1, 1.6108820759278226e-3, 16);
+  ExpectRelative(BesselIScaled(1e6).i0_minus_i1, 1.9947121500246404e-10, 4);
   EXPECT_EQ(BesselIScaled(0).i0, 1);
   EXPECT_EQ(BesselIScaled(0).i1, 0);
 }
@@ -83,6 +85,8 @@ TEST(Special, ScaledBesselRecurrence) {
   for (double x = 1e-3; x < 1e5; x *= 1.7) {
     const ScaledBesselI i = BesselIScaled(x);
     EXPECT_NEAR(i.i0 - 2 * i.i1 / x, i.i2, 16 * kEps * i.i0) << x;
+    EXPECT_NEAR(i.i0 - i.i1, i.i0_minus_i1, 4 * kEps * i.i0) << x;
+    EXPECT_EQ(BesselIScaled(-x).i0_minus_i1, i.i0_minus_i1);
   }
 }
 
