@@ -24,13 +24,17 @@ struct Curves {
   Slices slices;
   std::vector<const Slice*> chosen;
   std::size_t rows = 0, columns = 0;
+  std::size_t azimuths = 1;  // 1: not worth a label
   ResidualBand band;
   Range values;               // of f_r
   double ratio = 1;           // the strips reach from 1 / ratio to ratio
   std::size_t not_shown = 0;  // points of the chosen slices below the scale
 
-  explicit Curves(const ReportData& d) : data(d), slices(GatherSlices(d.measurement)), band(d) {
+  explicit Curves(const ReportData& d) : data(d), slices(GatherSlices(d.measurement, d.staying)), band(d) {
     chosen = ChooseSlices(slices, kMostRows, kMostColumns, &rows, &columns);
+    for (const Slice* slice : chosen) {
+      if (slice != nullptr && std::fabs(slice->phi - chosen.front()->phi) > 0.01) azimuths = 2;
+    }
   }
 };
 
@@ -101,13 +105,6 @@ Rgb CurveColor(const ReportData& data, std::size_t channel) {
   return {darker(c.r), darker(c.g), darker(c.b)};
 }
 
-std::string RatioLabel(double ratio) {
-  return ratio < 1.9 ? Join({"+", Number(100 * (ratio - 1), 2), "%"}, "") : Join({"×", Number(ratio, 2)}, "");
-}
-std::string InverseRatioLabel(double ratio) {
-  return ratio < 1.9 ? Join({"−", Number(100 * (1 - 1 / ratio), 2), "%"}, "") : Join({"÷", Number(ratio, 2)}, "");
-}
-
 void DrawSlice(const Curves& curves, const Slice& slice, Canvas* canvas, const Box& cell, bool x_labels,
                bool y_labels) {
   const ReportData& data = curves.data;
@@ -125,7 +122,7 @@ void DrawSlice(const Curves& curves, const Slice& slice, Canvas* canvas, const B
   const std::vector<Tick> y_ticks =
       LogTicks(curves.values.low, curves.values.high, std::max(3, static_cast<int>(main.height / 34)));
   std::vector<Tick> ratio_ticks = {
-      {1 / curves.ratio, InverseRatioLabel(curves.ratio)}, {1, "1"}, {curves.ratio, RatioLabel(curves.ratio)}};
+      {1 / curves.ratio, RatioText(1 / curves.ratio)}, {1, "1"}, {curves.ratio, RatioText(curves.ratio)}};
   axes.DrawGrid(canvas, x_ticks, y_ticks);
   strip_axes.DrawGrid(canvas, x_ticks, ratio_ticks);
   const FittedCurve curve = EvaluateCurve(curves, slice);
@@ -133,16 +130,19 @@ void DrawSlice(const Curves& curves, const Slice& slice, Canvas* canvas, const B
     const Canvas::Clip clip(canvas, main);
     const double mirror = axes.MapX(RadiansToDegrees(slice.theta));
     canvas->Line({mirror, main.y}, {mirror, main.bottom()}, {style::kFaint, 1, 1, 4, 3});
+    const double first = RadiansToDegrees(slice.points.front().theta) - 1,
+                 last = RadiansToDegrees(slice.points.back().theta) + 1;
     const double mute = data.shown_channels.size() > 1 ? 0.12 : 0.2;
     for (const std::size_t c : data.shown_channels) {
-      std::vector<Point> outline, line;
+      std::vector<Point> outline;
       std::vector<Point> back;
       for (std::size_t k = 0; k < curve.degrees.size(); ++k) {
         const double f = curve.f_r[c][k];
-        if (!(f > 0)) continue;
+        // No residual is known where the slice has no samples.
+        if (!(f > 0) || curve.degrees[k] < first || curve.degrees[k] > last) continue;
         const ResidualBand::Quantiles q = curves.band.At(curve.theta_h[k]);
         const double x = curve.degrees[k], floor = curves.values.low * 1e-2;
-        line.push_back(axes.Map(x, std::max(f, floor)));
+
         outline.push_back(axes.Map(x, std::max(f * std::exp(q.high), floor)));
         back.push_back(axes.Map(x, std::max(f * std::exp(q.low), floor)));
       }
@@ -190,7 +190,7 @@ void DrawSlice(const Curves& curves, const Slice& slice, Canvas* canvas, const B
                     .baseline = Baseline::kTop,
                     .markup = true};
   canvas->Text({main.x + 8, main.y + 8}, label, text);
-  if (!data.measurement.isotropic) {
+  if (curves.azimuths > 1) {
     text.weight = Weight::kRegular;
     text.color = style::kSecondary;
     canvas->Text({main.x + 8, main.y + 25}, (curves.slices.outgoing_stays ? "φ_o = " : "φ_i = ") + Degrees(slice.phi),
@@ -218,8 +218,12 @@ void Draw(const Curves& curves, Canvas* canvas, const Box& content) {
   std::string note =
       "Lower strips: measured / fitted. " +
       Join({"Samples within ", Number(RadiansToDegrees(curves.slices.tolerance), 2), "° of the plane."}, "");
-  if (curves.data.measurement.isotropic) note += " θ_i gathered within 0.5°, points moved along so that θ_h is kept.";
-  if (curves.not_shown > 0) note += Join({" ", Count(curves.not_shown), " values below the scale or negative."}, "");
+  if (curves.slices.gathered) note += " θ_i gathered within 0.5°, points moved along so that θ_h is kept.";
+  if (curves.not_shown > 0)
+    note +=
+        Join({" ", Count(curves.not_shown),
+              curves.not_shown == 1 ? " value below the scale or negative." : " values below the scale or negative."},
+             "");
   canvas->Text({area.x, content.bottom() - 5}, note,
                {.size = style::kNoteSize, .color = style::kSecondary, .markup = true});
 }

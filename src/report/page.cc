@@ -15,11 +15,14 @@ constexpr double kPageWidth = 1320, kMargin = 36, kGap = 28, kPanelHead = 34, kH
 void DrawLegend(Canvas* canvas, const std::vector<LegendEntry>& legend, double right, double y) {
   double x = right;
   for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
-    const TextStyle text = style::Note();
+    TextStyle text = style::Note();
+    text.markup = true;
     x -= canvas->TextWidth(entry->text, text);
     canvas->Text({x, y}, entry->text, text);
     const double middle = y - 4;
     switch (entry->mark) {
+      case LegendEntry::Mark::kNone:
+        break;
       case LegendEntry::Mark::kDot:
         x -= 10;
         canvas->Disc({x + 3, middle}, 2.5, entry->color, 0.85);

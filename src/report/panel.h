@@ -13,7 +13,7 @@
 namespace lobefit {
 
 struct LegendEntry {
-  enum class Mark { kDot, kLine, kBand, kSwatch };
+  enum class Mark { kNone, kDot, kLine, kBand, kSwatch };
   Mark mark = Mark::kDot;
   Rgb color;
   std::string text;
@@ -33,6 +33,7 @@ using PanelMaker = std::optional<Panel> (*)(const ReportData& data);
 
 std::optional<Panel> CurvesPanel(const ReportData& data);
 std::optional<Panel> ParametersPanel(const ReportData& data);
+std::optional<Panel> MapsPanel(const ReportData& data);
 std::optional<Panel> QualityPanel(const ReportData& data);
 
 // In the order of the page.

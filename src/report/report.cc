@@ -8,7 +8,7 @@
 namespace lobefit {
 
 const std::vector<PanelMaker>& PanelMakers() {
-  static const std::vector<PanelMaker> makers = {CurvesPanel, ParametersPanel, QualityPanel};
+  static const std::vector<PanelMaker> makers = {CurvesPanel, ParametersPanel, QualityPanel, MapsPanel};
   return makers;
 }
 

@@ -33,6 +33,7 @@ ReportData::ReportData(const Material& fitted_material, const Measurement& measu
     : material(Checked(fitted_material, measured)),
       measurement(measured),
       fitted(fitted_material.model, fitted_material.Values(), measured.channels.size()),
+      staying(GroupByStayingDirection(measured)),
       threads(thread_count) {
   const Samples& samples = measurement.samples;
   fitted_values.assign(channels(), std::vector<float>(samples.size()));
@@ -51,6 +52,14 @@ ReportData::ReportData(const Material& fitted_material, const Measurement& measu
       for (std::size_t i = 0; i < count; ++i) fitted_values[c][begin + i] = static_cast<float>(f_r[c][i]);
     }
   });
+  const std::vector<std::string>& names = measurement.channels.names;
+  if (names == std::vector<std::string>{"R", "G", "B"}) {
+    display_weights = {0.2126, 0.7152, 0.0722};  // ITU-R BT.709
+  } else if (names == std::vector<std::string>{"X", "Y", "Z"}) {
+    display_weights = {0, 1, 0};
+  } else {
+    display_weights.assign(channels(), 1.0 / static_cast<double>(channels()));
+  }
   channel_colors = ChannelColors(measurement.channels.names);
   for (std::size_t c = 0; c < channels(); ++c) {
     const bool spectral = c < measurement.channels.wavelengths_nm.size();
@@ -62,6 +71,18 @@ ReportData::ReportData(const Material& fitted_material, const Measurement& measu
   } else {
     shown_channels = {0, (channels() - 1) / 2, channels() - 1};
   }
+}
+
+double ReportData::Display(const std::vector<double>& f_r) const {
+  double sum = 0;
+  for (std::size_t c = 0; c < display_weights.size(); ++c) sum += display_weights[c] * f_r[c];
+  return sum;
+}
+
+double ReportData::Display(const std::vector<std::vector<double>>& values, std::size_t sample) const {
+  double sum = 0;
+  for (std::size_t c = 0; c < display_weights.size(); ++c) sum += display_weights[c] * values[c][sample];
+  return sum;
 }
 
 double ReportData::LogRatio(std::size_t channel, std::size_t sample) const {

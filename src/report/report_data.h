@@ -9,6 +9,7 @@
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/report/canvas.h"
+#include "lobefit/report/slices.h"
 
 namespace lobefit {
 
@@ -20,6 +21,7 @@ struct ReportData {
   const Material& material;
   const Measurement& measurement;
   Reflectance fitted;
+  Staying staying;
   int threads;
   // fitted_values[channel][sample], f_r in 1/sr.
   std::vector<std::vector<float>> fitted_values;
@@ -28,8 +30,12 @@ struct ReportData {
   std::vector<std::string> channel_names;
   // Channels that figures show where there is no room for all: all of up to three, else first, middle and last.
   std::vector<std::size_t> shown_channels;
+  std::vector<double> display_weights;  // one a channel, sum 1
 
   std::size_t channels() const { return fitted.channels(); }
+  // One number for pictures: luminance of R, G, B, the Y of X, Y, Z, else the mean of the channels.
+  double Display(const std::vector<double>& f_r) const;
+  double Display(const std::vector<std::vector<double>>& values, std::size_t sample) const;
   // ln(measured / fitted); -infinity for a measured value of zero or less, NaN where the fitted value is zero.
   double LogRatio(std::size_t channel, std::size_t sample) const;
 };

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <set>
+#include <numeric>
 #include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include "lobefit/math/directions.h"
 
@@ -16,20 +18,30 @@ constexpr double kDegree = kPi / 180;
 // Angles from the plane that are tried, degrees; the first one that gives enough samples is taken.
 constexpr std::array<double, 5> kTolerances = {0.1, 0.5, 1, 2, 4};
 
-struct Direction {
-  double theta, phi;
-};
-
-// Whole steps of `resolution` in both angles as one key.
-std::uint64_t KeyOf(const Direction& d, double resolution, bool isotropic) {
-  const auto theta = static_cast<std::uint64_t>(std::llround(d.theta / resolution));
-  if (isotropic || d.theta < resolution / 2) return theta << 32U;
+// Whole steps of `resolution` in both angles as one key, in the order polar angle, azimuth.
+std::uint64_t KeyOf(const Vec3& w, double resolution, bool isotropic) {
+  const double theta = std::atan2(std::hypot(w.x, w.y), w.z);
+  const auto step = static_cast<std::uint64_t>(std::llround(theta / resolution));
+  if (isotropic || step == 0) return step << 32U;
   const auto turn = std::llround(2 * kPi / resolution);
-  const auto phi = static_cast<std::uint64_t>(((std::llround(d.phi / resolution) % turn) + turn) % turn);
-  return theta << 32U | phi;
+  const auto phi = static_cast<std::uint64_t>(((std::llround(std::atan2(w.y, w.x) / resolution) % turn) + turn) % turn);
+  return step << 32U | phi;
 }
 
-Direction ToDirection(const Vec3& w) { return {PolarAngle(w), Azimuth(w)}; }
+Vec3 Direction(const Samples& samples, std::size_t i, bool outgoing) {
+  return outgoing ? samples.wo(i) : samples.wi(i);
+}
+
+// Number of different directions among some samples spread over the file.
+std::size_t CountDirections(const Measurement& measurement, bool outgoing, double resolution) {
+  constexpr std::size_t kLooked = 20000;
+  std::unordered_set<std::uint64_t> keys;
+  const std::size_t step = 1 + measurement.samples.size() / kLooked;
+  for (std::size_t i = 0; i < measurement.samples.size(); i += step) {
+    keys.insert(KeyOf(Direction(measurement.samples, i, outgoing), resolution, measurement.isotropic));
+  }
+  return keys.size();
+}
 
 struct Candidate {
   double theta = 0, phi = 0;
@@ -37,53 +49,45 @@ struct Candidate {
   std::vector<float> off_plane;
 };
 
-struct Gathered {
-  std::unordered_map<std::uint64_t, Candidate> groups;
-  std::size_t directions = 0;
-};
+using Gathered = std::vector<Candidate>;
 
-Gathered Gather(const Measurement& measurement, bool outgoing_stays) {
+Gathered Gather(const Measurement& measurement, const Staying& staying) {
   const Samples& samples = measurement.samples;
-  const double resolution = measurement.isotropic ? kDegree : 0.1 * kDegree;
   const double widest = std::sin(kTolerances.back() * kDegree);
-  Gathered gathered;
-  std::set<std::uint64_t> directions;
+  Gathered gathered(staying.directions.size());
+  for (std::size_t g = 0; g < gathered.size(); ++g) {
+    gathered[g].theta = PolarAngle(staying.directions[g]);
+    gathered[g].phi = gathered[g].theta < staying.resolution / 2 ? 0 : Azimuth(staying.directions[g]);
+  }
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Vec3 stays = outgoing_stays ? samples.wo(i) : samples.wi(i),
-               sweeps = outgoing_stays ? samples.wi(i) : samples.wo(i);
+    const Vec3 stays = Direction(samples, i, staying.outgoing), sweeps = Direction(samples, i, !staying.outgoing);
+    Candidate& group = gathered[staying.group[i]];
     const double length = std::hypot(stays.x, stays.y);
-    const bool normal = std::atan2(length, stays.z) < resolution / 2;
-    // Away from the normal the plane is that of the direction which stays; along the normal, the xz plane.
+    const bool normal = group.theta < staying.resolution / 2;
+    // Away from the normal the plane is that of the direction which stays; along the normal, the xz plane, or any for
+    // an isotropic sample.
+    const bool any_plane = normal && measurement.isotropic;
     const double ex = normal ? 1 : stays.x / length, ey = normal ? 0 : stays.y / length;
-    const double off = normal && measurement.isotropic ? 0 : std::fabs(sweeps.x * -ey + sweeps.y * ex);
+    const double off = any_plane ? 0 : std::fabs(sweeps.x * -ey + sweeps.y * ex);
     if (off > widest) continue;
-    const double along =
-        normal && measurement.isotropic ? std::hypot(sweeps.x, sweeps.y) : sweeps.x * ex + sweeps.y * ey;
-    const Direction d = ToDirection(stays);
-    Candidate& group = gathered.groups[KeyOf(d, resolution, measurement.isotropic)];
+    const double along = any_plane ? std::hypot(sweeps.x, sweeps.y) : sweeps.x * ex + sweeps.y * ey;
     double theta = std::atan2(-along, sweeps.z);
-    if (measurement.isotropic) theta += std::round(d.theta / resolution) * resolution - d.theta;
-    // The first direction stands for all: they agree to the resolution.
-    if (group.points.empty()) {
-      group.theta = measurement.isotropic ? std::round(d.theta / resolution) * resolution : d.theta;
-      group.phi = normal || measurement.isotropic ? 0 : d.phi;
-    }
+    if (staying.gathered) theta += group.theta - std::atan2(length, stays.z);
     group.points.push_back({theta, i});
     group.off_plane.push_back(static_cast<float>(std::asin(std::min(1.0, off))));
-    // Along the normal an isotropic measurement has no side: the sample stands for both.
-    if (normal && measurement.isotropic) {
+    // Where any plane will do there is no side either: the sample stands for both.
+    if (any_plane) {
       group.points.push_back({-theta, i});
       group.off_plane.push_back(0);
     }
   }
-  gathered.directions = gathered.groups.size();
   return gathered;
 }
 
 // Number of samples of each group within the tolerance.
 std::size_t GroupsWith(const Gathered& gathered, double tolerance, std::size_t fewest) {
   std::size_t enough = 0;
-  for (const auto& [key, group] : gathered.groups) {
+  for (const Candidate& group : gathered) {
     const auto inside =
         std::count_if(group.off_plane.begin(), group.off_plane.end(), [&](float off) { return off <= tolerance; });
     enough += static_cast<std::size_t>(inside) >= fewest ? 1 : 0;
@@ -123,17 +127,52 @@ std::vector<const Slice*> SpreadAngles(const std::vector<const Slice*>& slices, 
 
 }  // namespace
 
-Slices GatherSlices(const Measurement& measurement, std::size_t fewest) {
-  Slices result;
-  Gathered gathered = Gather(measurement, false);
-  if (!measurement.isotropic) {
-    // A fixed detector and a moving source: far fewer directions of view than of light.
-    Gathered swapped = Gather(measurement, true);
-    if (2 * swapped.directions < gathered.directions) {
-      result.outgoing_stays = true;
-      std::swap(gathered, swapped);
-    }
+Staying GroupByStayingDirection(const Measurement& measurement) {
+  constexpr std::size_t kMostListed = 2000;  // more directions than an instrument lists
+  Staying staying;
+  staying.resolution = 0.1 * kDegree;
+  const std::size_t incident = CountDirections(measurement, false, staying.resolution);
+  const std::size_t outgoing = CountDirections(measurement, true, staying.resolution);
+  staying.outgoing = 2 * outgoing < incident;
+  staying.gathered = measurement.isotropic && std::min(incident, outgoing) > 180;
+  if (staying.gathered) {
+    staying.outgoing = false;
+    staying.resolution = kDegree;
+  } else if (std::min(incident, outgoing) > kMostListed) {
+    staying.resolution = kDegree;
   }
+  const Samples& samples = measurement.samples;
+  std::unordered_map<std::uint64_t, std::uint32_t> groups;
+  std::vector<std::pair<std::uint64_t, Vec3>> found;
+  staying.group.resize(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Vec3 w = Direction(samples, i, staying.outgoing);
+    const std::uint64_t key = KeyOf(w, staying.resolution, measurement.isotropic);
+    const auto [entry, is_new] = groups.try_emplace(key, static_cast<std::uint32_t>(found.size()));
+    if (is_new) {
+      // The first direction stands for all, or the whole degree where they are gathered.
+      const double theta = staying.gathered ? static_cast<double>(key >> 32U) * staying.resolution : PolarAngle(w);
+      found.emplace_back(key, FromSpherical(theta, measurement.isotropic ? 0 : Azimuth(w)));
+    }
+    staying.group[i] = entry->second;
+  }
+  std::vector<std::uint32_t> order(found.size()), rank(found.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return found[a].first < found[b].first; });
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    rank[order[k]] = static_cast<std::uint32_t>(k);
+    staying.directions.push_back(found[order[k]].second);
+  }
+  for (std::uint32_t& group : staying.group) group = rank[group];
+  return staying;
+}
+
+Slices GatherSlices(const Measurement& measurement, const Staying& staying, std::size_t fewest) {
+  Slices result;
+  const Gathered gathered = Gather(measurement, staying);
+  result.outgoing_stays = staying.outgoing;
+  result.gathered = staying.gathered;
   // Enough is a curve; else, in the widest plane, `fewest`.
   const std::size_t most = GroupsWith(gathered, kTolerances.back() * kDegree, fewest);
   result.tolerance = kTolerances.back() * kDegree;
@@ -144,7 +183,7 @@ Slices GatherSlices(const Measurement& measurement, std::size_t fewest) {
       break;
     }
   }
-  for (auto& [key, group] : gathered.groups) {
+  for (const Candidate& group : gathered) {
     Slice slice;
     slice.theta = group.theta;
     slice.phi = group.phi;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "lobefit/base/text.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {
@@ -83,8 +84,17 @@ std::string Number(double value, int digits) {
 }
 
 std::string Degrees(double radians) {
-  const double tenths = std::round(RadiansToDegrees(radians) * 10);
+  double tenths = std::round(RadiansToDegrees(radians) * 10);
+  if (tenths == -1800) tenths = 1800;
   return Fixed(tenths / 10, std::fmod(tenths, 10) == 0 ? 0 : 1) + "°";
+}
+
+std::string RatioText(double ratio) {
+  if (ratio >= 1.9) return Join({"×", Number(ratio, 2)}, "");
+  if (ratio > 1) return Join({"+", Number(100 * (ratio - 1), 2), "%"}, "");
+  if (ratio == 1) return "1";
+  if (ratio > 1 / 1.9) return Join({"−", Number(100 * (1 - ratio), 2), "%"}, "");
+  return Join({"÷", Number(1 / ratio, 2)}, "");
 }
 
 std::string Count(std::size_t value) {

@@ -47,6 +47,8 @@ Rgb DivergingColor(double t);
 std::string Number(double value, int digits = 3);
 // An angle in radians as degrees with at most one decimal: "30°", "2.5°".
 std::string Degrees(double radians);
+// A ratio: "+20%", "−17%" near 1, else "×3", "÷3".
+std::string RatioText(double ratio);
 // 1 234 567 with thin gaps.
 std::string Count(std::size_t value);
 // A value rounded to where its error has two digits, and that error: {"0.1834", "0.0012"}. Error NaN or 0: six digits
