@@ -9,12 +9,12 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/io/formats.h"
+#include "lobefit/io/merl_table.h"
 
 namespace lobefit {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 12;
-constexpr std::array<double, 3> kScale = {1.00 / 1500, 1.15 / 1500, 1.66 / 1500};
 
 struct Dims {
   std::int32_t theta_h, theta_d, phi_d;
@@ -52,7 +52,7 @@ void CheckSize(const InputFile& file) {
     throw InputError(name + ": byte 0: the dims are " + Text(dims) +
                      "; a MERL table has 90 x 90 x 180 (or 90 x 90 x 360 without reciprocity) cells");
   }
-  const std::uint64_t expected = kHeaderBytes + 3 * sizeof(double) * dims.cells();
+  const std::uint64_t expected = MerlBytes(static_cast<std::size_t>(dims.phi_d));
   if (file.bytes.size() != expected) {
     throw InputError(name + ": byte " + std::to_string(std::min<std::uint64_t>(file.bytes.size(), expected)) + ": " +
                      (file.bytes.size() < expected ? "the file ends" : "the table ends") + ", but a table of " +
@@ -71,17 +71,12 @@ struct Axis {
   }
 };
 
-double ThetaH(const Dims& dims, double index) {
-  const double fraction = index / dims.theta_h;
-  return fraction * fraction * kPi / 2;
-}
-
 class MerlTable {
  public:
   MerlTable(std::string_view bytes, CellPosition position) : dims_(ReadDims(bytes)), cells_(dims_.cells()) {
     data_ = bytes.data() + kHeaderBytes;
     const double shift = position == CellPosition::kCentre ? 0.5 : 0.0;
-    for (int i = 0; i < dims_.theta_h; ++i) theta_h_.Add(ThetaH(dims_, i + shift));
+    for (int i = 0; i < dims_.theta_h; ++i) theta_h_.Add(MerlThetaH(i + shift));
     for (int i = 0; i < dims_.theta_d; ++i) theta_d_.Add((i + shift) / dims_.theta_d * kPi / 2);
     const double turn = dims_.phi_d == 360 ? 2 * kPi : kPi;
     for (int i = 0; i < dims_.phi_d; ++i) phi_d_.Add((i + shift) / dims_.phi_d * turn);
@@ -133,8 +128,8 @@ class MerlTable {
   double CellMeasure(std::size_t row) const {
     const int h = static_cast<int>(row) / dims_.theta_d, d = static_cast<int>(row) % dims_.theta_d;
     const double theta_d = (d + 0.5) / dims_.theta_d * kPi / 2;
-    const double step_h = ThetaH(dims_, h + 1) - ThetaH(dims_, h);
-    return 4 * std::cos(theta_d) * std::sin(ThetaH(dims_, h + 0.5)) * std::sin(theta_d) * step_h;
+    const double step_h = MerlThetaH(h + 1) - MerlThetaH(h);
+    return 4 * std::cos(theta_d) * std::sin(MerlThetaH(h + 0.5)) * std::sin(theta_d) * step_h;
   }
 
  private:
@@ -143,7 +138,7 @@ class MerlTable {
   double Load(std::size_t cell, std::size_t channel) const {
     double stored = 0;
     std::memcpy(&stored, data_ + sizeof(double) * (cell + channel * cells_), sizeof(double));
-    return stored * kScale[channel];
+    return stored * kMerlScale[channel];
   }
 
   Dims dims_;
@@ -161,8 +156,7 @@ bool IsMerl(std::string_view bytes) {
   if (AreKnown(dims)) return true;
   // A file of a table's size with other dims, or dims like a table's with another size, is a damaged MERL file: the
   // reader says so.
-  constexpr std::uint64_t kDatabaseSize = kHeaderBytes + 3 * sizeof(double) * std::uint64_t{90 * 90 * 180};
-  return bytes.size() == kDatabaseSize || (dims.theta_h == 90 && dims.theta_d == 90);
+  return bytes.size() == MerlBytes(180) || (dims.theta_h == 90 && dims.theta_d == 90);
 }
 
 Measurement ReadMerl(const InputFile& file, const ReadOptions& options) {

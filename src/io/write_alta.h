@@ -1,0 +1,14 @@
+// Writing a measurement as ALTA text.
+#pragma once
+
+#include <filesystem>
+
+#include "lobefit/measurement/measurement.h"
+
+namespace lobefit {
+
+// Rows theta_i phi_i theta_o phi_o (SPHERICAL_TL_PL_TV_PV, radians) and f_r of each channel (INV_STERADIAN). The format
+// has no names of channels: wavelengths stand in a comment. Weights are not written.
+void WriteAlta(const Measurement& measurement, const std::filesystem::path& path);
+
+}  // namespace lobefit
