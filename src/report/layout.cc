@@ -12,39 +12,48 @@ PageLayout ArrangePanels(const std::vector<PanelSize>& panels, double left, doub
   for (std::size_t i = 0; i < panels.size(); ++i) (panels[i].wide ? wide : narrow).push_back(i);
   const double third = (width - 2 * gap) / 3, two_thirds = width - third - gap;
   double y = top;
-  std::size_t next = 0;
-  for (std::size_t w = 0; w < wide.size(); ++w) {
-    const std::size_t panel = wide[w];
-    if (next == narrow.size()) {
-      layout.boxes[panel] = {left, y, width, panels[panel].height_full};
-      y += panels[panel].height_full + gap;
+  for (const std::size_t panel : wide) {
+    if (narrow.empty()) {
+      const double height = panels[panel].height(width);
+      layout.boxes[panel] = {left, y, width, height};
+      y += height + gap;
       continue;
     }
-    const std::size_t first = next;
-    double stack = panels[narrow[next++]].height_third;
-    // The last wide panel takes one more where the stack then is a little taller, rather than leave it alone in a row.
-    const bool last = w + 1 == wide.size();
-    const double room = panels[panel].height_two_thirds * (last ? 1.35 : 1.04);
-    while (next < narrow.size() && stack + gap + panels[narrow[next]].height_third <= room) {
-      stack += gap + panels[narrow[next++]].height_third;
+    const double own = panels[panel].height(two_thirds);
+    std::vector<std::size_t> stack = {narrow.front()};
+    double used = panels[narrow.front()].height(third);
+    narrow.erase(narrow.begin());
+    for (std::size_t k = 0; k < narrow.size();) {
+      const double longer = used + gap + panels[narrow[k]].height(third);
+      // A stack may stand out a little rather than leave a panel to a row of its own.
+      if (longer > own * 1.06) {
+        ++k;
+        continue;
+      }
+      used = longer;
+      stack.push_back(narrow[k]);
+      narrow.erase(narrow.begin() + static_cast<std::ptrdiff_t>(k));
     }
-    const double height = std::max(panels[panel].height_two_thirds, stack);
+    const double height = std::max(own, used);
     layout.boxes[panel] = {left, y, two_thirds, height};
     double side = y;
-    for (std::size_t k = first; k < next; ++k) {
+    for (const std::size_t beside : stack) {
       // What is left over goes to the last of the stack.
-      const double own = k + 1 < next ? panels[narrow[k]].height_third : y + height - side;
-      layout.boxes[narrow[k]] = {left + two_thirds + gap, side, third, own};
-      side += own + gap;
+      const double tall = beside == stack.back() ? y + height - side : panels[beside].height(third);
+      layout.boxes[beside] = {left + two_thirds + gap, side, third, tall};
+      side += tall + gap;
     }
     y += height + gap;
   }
-  while (next < narrow.size()) {
-    const std::size_t count = std::min<std::size_t>(3, narrow.size() - next);
+  for (std::size_t next = 0; next < narrow.size();) {
+    // Four are two rows of two.
+    const std::size_t rest = narrow.size() - next, count = rest == 4 ? 2 : std::min<std::size_t>(3, rest);
+    const double share = (width - static_cast<double>(count - 1) * gap) / static_cast<double>(count),
+                 own = rest == 1 ? third : share;
     double height = 0;
-    for (std::size_t k = 0; k < count; ++k) height = std::max(height, panels[narrow[next + k]].height_third);
+    for (std::size_t k = 0; k < count; ++k) height = std::max(height, panels[narrow[next + k]].height(own));
     for (std::size_t k = 0; k < count; ++k)
-      layout.boxes[narrow[next + k]] = {left + static_cast<double>(k) * (third + gap), y, third, height};
+      layout.boxes[narrow[next + k]] = {left + static_cast<double>(k) * (own + gap), y, own, height};
     next += count;
     y += height + gap;
   }

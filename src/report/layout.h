@@ -1,6 +1,7 @@
 // Where the panels stand: wide ones in two thirds of the page with narrow ones stacked beside them.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "lobefit/report/canvas.h"
@@ -9,8 +10,7 @@ namespace lobefit {
 
 struct PanelSize {
   bool wide = true;
-  // Height of the whole panel for each width that it may be given: a third, two thirds or all of the page.
-  double height_third = 0, height_two_thirds = 0, height_full = 0;
+  std::function<double(double width)> height;  // of the whole panel
 };
 
 struct PageLayout {

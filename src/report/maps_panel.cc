@@ -59,7 +59,7 @@ float Reach(const std::vector<ScatterPoint>& points) {
       if (w.z > 0 && tree.Nearest(DiscPoint(w), 1, &found) > 0) distances.push_back(std::sqrt(found[0].distance2));
     }
   }
-  return static_cast<float>(std::clamp(3 * Quantile(&distances, 0.5), 0.03, 0.11));
+  return static_cast<float>(std::clamp(3 * Quantile(&distances, 0.5), 0.045, 0.11));
 }
 
 Map MakeMap(const ReportData& data, const std::vector<std::uint32_t>& members, const Vec3& stays) {
@@ -253,7 +253,7 @@ void Draw(const Maps& maps, Canvas* canvas, const Box& content) {
                  {.size = style::kBodySize, .color = style::kInk, .align = Align::kCenter, .upwards = true});
   }
   const double y = content.y + kHead + 3 * (size + kSpace) + 14, width = std::min(320.0, (used - 60) / 2);
-  DrawColorScale(canvas, {left, y, width, 9}, SequentialColor, maps.values,
+  DrawColorScale(canvas, {left + 12, y, width, 9}, SequentialColor, maps.values,
                  LogTicks(maps.values.low, maps.values.high, 5), "f_r  (1/sr)");
   const double inner = std::sqrt(maps.ratio);
   const std::vector<Tick> ticks = {{1 / maps.ratio, RatioText(1 / maps.ratio)},
@@ -261,8 +261,8 @@ void Draw(const Maps& maps, Canvas* canvas, const Box& content) {
                                    {1, "1"},
                                    {inner, ""},
                                    {maps.ratio, RatioText(maps.ratio)}};
-  DrawColorScale(canvas, {left + used - width, y, width, 9}, DivergingColor, {1 / maps.ratio, maps.ratio, true}, ticks,
-                 "measured / fitted");
+  DrawColorScale(canvas, {left + used - width - 14, y, width, 9}, DivergingColor, {1 / maps.ratio, maps.ratio, true},
+                 ticks, "measured / fitted");
 }
 
 }  // namespace

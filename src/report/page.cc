@@ -145,17 +145,12 @@ Canvas DrawPage(const ReportData& data, double scale, const std::shared_ptr<Font
   for (const PanelMaker maker : PanelMakers()) {
     if (std::optional<Panel> panel = maker(data)) panels.push_back(std::move(*panel));
   }
-  const double width = kPageWidth - 2 * kMargin, third = (width - 2 * kGap) / 3;
+  const double width = kPageWidth - 2 * kMargin;
   Canvas ruler(1, 1, scale, fonts);
   std::vector<PanelSize> sizes;
   for (const Panel& panel : panels) {
     if (ids != nullptr) ids->push_back(panel.id);
-    PanelSize size;
-    size.wide = panel.wide;
-    size.height_third = kPanelHead + panel.height(&ruler, third);
-    size.height_two_thirds = kPanelHead + panel.height(&ruler, width - third - kGap);
-    size.height_full = kPanelHead + panel.height(&ruler, width);
-    sizes.push_back(size);
+    sizes.push_back({panel.wide, [&panel, &ruler](double w) { return kPanelHead + panel.height(&ruler, w); }});
   }
   const PageLayout layout = ArrangePanels(sizes, kMargin, kHeader + kMargin / 2, width, kGap);
   const double foot = layout.height + kGap;

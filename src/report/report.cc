@@ -8,7 +8,8 @@
 namespace lobefit {
 
 const std::vector<PanelMaker>& PanelMakers() {
-  static const std::vector<PanelMaker> makers = {CurvesPanel, ParametersPanel, QualityPanel, MapsPanel};
+  static const std::vector<PanelMaker> makers = {CurvesPanel, ParametersPanel, QualityPanel,   MapsPanel,
+                                                 NdfPanel,    EnergyPanel,     ResidualsPanel, CorrelationPanel};
   return makers;
 }
 

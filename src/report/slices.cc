@@ -84,13 +84,21 @@ Gathered Gather(const Measurement& measurement, const Staying& staying) {
   return gathered;
 }
 
-// Number of samples of each group within the tolerance.
+// Number of groups that have `fewest` samples within the tolerance, which reach nearly as far along the slice as those
+// within the widest one.
 std::size_t GroupsWith(const Gathered& gathered, double tolerance, std::size_t fewest) {
   std::size_t enough = 0;
   for (const Candidate& group : gathered) {
-    const auto inside =
-        std::count_if(group.off_plane.begin(), group.off_plane.end(), [&](float off) { return off <= tolerance; });
-    enough += static_cast<std::size_t>(inside) >= fewest ? 1 : 0;
+    std::size_t inside = 0;
+    double low = 10, high = -10, all_low = 10, all_high = -10;
+    for (std::size_t i = 0; i < group.points.size(); ++i) {
+      const double theta = group.points[i].theta;
+      all_low = std::min(all_low, theta), all_high = std::max(all_high, theta);
+      if (static_cast<double>(group.off_plane[i]) > tolerance) continue;
+      low = std::min(low, theta), high = std::max(high, theta);
+      ++inside;
+    }
+    if (inside >= fewest && high - low >= 0.85 * (all_high - all_low)) ++enough;
   }
   return enough;
 }

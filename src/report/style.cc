@@ -90,11 +90,16 @@ std::string Degrees(double radians) {
 }
 
 std::string RatioText(double ratio) {
-  if (ratio >= 1.9) return Join({"×", Number(ratio, 2)}, "");
-  if (ratio > 1) return Join({"+", Number(100 * (ratio - 1), 2), "%"}, "");
+  const auto short_number = [](double value) {
+    std::string text = Number(value, 2);
+    if (text.size() > 2 && text.substr(text.size() - 2) == ".0") text.resize(text.size() - 2);
+    return text;
+  };
+  if (ratio >= 1.9) return Join({"×", short_number(ratio)}, "");
+  if (ratio > 1) return Join({"+", short_number(100 * (ratio - 1)), "%"}, "");
   if (ratio == 1) return "1";
-  if (ratio > 1 / 1.9) return Join({"−", Number(100 * (1 - ratio), 2), "%"}, "");
-  return Join({"÷", Number(1 / ratio, 2)}, "");
+  if (ratio > 1 / 1.9) return Join({"−", short_number(100 * (1 - ratio)), "%"}, "");
+  return Join({"÷", short_number(1 / ratio)}, "");
 }
 
 std::string Count(std::size_t value) {
