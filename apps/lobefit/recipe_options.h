@@ -13,6 +13,7 @@ namespace lobefit {
 class RecipeOptions {
  public:
   void AddTo(CLI::App* app);
+  bool IsAutomatic() const { return recipe_ == "auto"; }
   // Throws UsageError and InputError.
   Recipe Choose(const Measurement& measurement) const;
 

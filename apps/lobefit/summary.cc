@@ -48,7 +48,7 @@ void AppendParameters(const Material& material, std::string* text) {
 std::string WithError(double value, double standard_error) {
   if (!std::isfinite(standard_error) || standard_error <= 0) return fmt::format("{:.5g}", value);
   const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(standard_error))));
-  if (decimals > 12) return fmt::format("{:.12g} +- {:.1e}", value, standard_error);
+  if (decimals > 9) return fmt::format("{:.10g} +- {:.1e}", value, standard_error);
   return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, standard_error, decimals);
 }
 

@@ -61,7 +61,12 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   const double read_s = Seconds(start);
   FitOptions options = verb.fit;
   options.threads = common.Threads();
-  Material material = Fit(verb.recipe.Choose(measurement), options, &measurement);
+  const Recipe recipe = verb.recipe.Choose(measurement);
+  Material material = Fit(recipe, options, &measurement);
+  if (verb.recipe.IsAutomatic()) {
+    if (const std::optional<Recipe> alternative = AutomaticAlternative(recipe, material))
+      material = Fit(*alternative, options, &measurement);
+  }
   material.command = common.command;
   material.timings_s["read"] = read_s;
 

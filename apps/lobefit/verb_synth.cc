@@ -21,6 +21,7 @@ struct SynthVerb {
   std::string source, out, channels = "R,G,B", theta_i = "5,15,25,30,35,40,45,50,55,60,65,70", phi_i = "0";
   double step = 10, theta_max = 80, noise = 0, noise_floor = 0;
   bool in_plane = false;
+  int digits = 17;
   std::uint64_t seed = 1;
 };
 
@@ -92,7 +93,7 @@ int RunSynth(const SynthVerb& verb, const CommonOptions& common) {
   comments.push_back(fmt::format("lobefit.noise.multiplicative: {}", FormatDouble(verb.noise)));
   comments.push_back(fmt::format("lobefit.noise.additive: {}", FormatDouble(verb.noise_floor)));
   comments.push_back(fmt::format("lobefit.seed: {}", verb.seed));
-  WriteCsv(measurement, comments, verb.out);
+  WriteCsv(measurement, comments, verb.out, verb.digits);
   fmt::print("{}: {} samples, {} channels\n", verb.out, measurement.samples.size(), measurement.channels.size());
   return kExitDone;
 }
@@ -118,6 +119,8 @@ std::function<int()> SetUpSynth(CLI::App* app, CommonOptions* common) {
   app->add_option("--noise-additive", verb->noise_floor, "standard deviation of additive noise, 1/sr")
       ->check(CLI::Range(0.0, 1e6));
   app->add_option("--channels", verb->channels, "names of the channels of a recipe, with commas between");
+  app->add_option("--digits", verb->digits, "significant digits of the numbers (default 17: nothing is lost)")
+      ->check(CLI::Range(4, 17));
   app->add_option("--seed", verb->seed, "seed of the noise");
   return [=] { return RunSynth(*verb, *common); };
 }

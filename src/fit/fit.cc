@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -29,17 +30,19 @@ struct DistinctMinimum {
 };
 
 // Two descents ended in the same minimum where their costs agree to a relative 1e-5 (the subsample's descents end at
-// 1e-12).
-bool SameCost(double a, double b) { return std::fabs(a - b) <= 1e-5 * std::max(a, b) + 1e-280; }
+// 1e-12), or where both are nothing but rounding: residuals of 1e-12 on average.
+bool SameCost(double a, double b, std::size_t residuals) {
+  return std::fabs(a - b) <= 1e-5 * std::max(a, b) + 1e-24 * static_cast<double>(residuals);
+}
 
 // Distinct minima, best first.
-std::vector<DistinctMinimum> Distinct(std::vector<Solution> solutions) {
+std::vector<DistinctMinimum> Distinct(std::vector<Solution> solutions, std::size_t residuals) {
   std::erase_if(solutions, [](const Solution& s) { return !std::isfinite(s.cost); });
   std::stable_sort(solutions.begin(), solutions.end(),
                    [](const Solution& a, const Solution& b) { return a.cost < b.cost; });
   std::vector<DistinctMinimum> minima;
   for (const Solution& solution : solutions) {
-    if (!minima.empty() && SameCost(minima.back().solution.cost, solution.cost)) {
+    if (!minima.empty() && SameCost(minima.back().solution.cost, solution.cost, residuals)) {
       ++minima.back().starts;
     } else {
       minima.push_back({solution, 1});
@@ -58,7 +61,7 @@ std::vector<DistinctMinimum> Search(const Problem& problem, const Layout& layout
     ThreadPool alone(1);
     solutions[k] = Solve(problem, layout, starts[k].u, {}, &alone);
   });
-  return Distinct(std::move(solutions));
+  return Distinct(std::move(solutions), problem.size() * problem.channels());
 }
 
 // Root mean square residual under each metric with the recipe's weighting, over all samples and channels that the
@@ -235,6 +238,25 @@ MeasurementTraits TraitsOf(const Measurement& measurement) {
   return traits;
 }
 
+std::optional<Recipe> AutomaticAlternative(const Recipe& recipe, const Material& material) {
+  if (recipe.model.lobes.size() != 1 || recipe.model.lobes[0].ndf != Ndf::kGgxTilted ||
+      recipe.model.lobes[0].fresnel != Fresnel::kSchlick) {
+    return std::nullopt;
+  }
+  const std::size_t f0 = 5;
+  bool above = false;
+  for (const double value : material.parameters[f0].values) above = above || value >= 1 - 1e-6;
+  if (!above) return std::nullopt;
+  Recipe alternative = recipe;
+  alternative.name = "ggx-tilted-scaled";
+  alternative.model.lobes[0].fresnel = Fresnel::kNone;
+  alternative.reason = recipe.reason +
+                       "; the lobe's width across the plane is not seen, and with equal widths f0 would exceed 1, so "
+                       "the reflectance and that "
+                       "width enter as one free scale";
+  return alternative;
+}
+
 Material Fit(const Recipe& recipe, const FitOptions& options, Measurement* measurement) {
   const auto start_time = std::chrono::steady_clock::now();
   const std::size_t read = measurement->samples.size() + measurement->set_aside.total();
@@ -273,7 +295,8 @@ Material Fit(const Recipe& recipe, const FitOptions& options, Measurement* measu
     }
     if (minima.size() >= 2 && finished == 2 && minima[1].solution.cost < minima[0].solution.cost)
       std::swap(minima[0], minima[1]);
-    if (minima.size() >= 2 && finished == 2 && SameCost(minima[0].solution.cost, minima[1].solution.cost)) {
+    if (minima.size() >= 2 && finished == 2 &&
+        SameCost(minima[0].solution.cost, minima[1].solution.cost, problem.size() * problem.channels())) {
       minima[0].starts += minima[1].starts;
       minima.erase(minima.begin() + 1);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
@@ -28,5 +29,10 @@ MeasurementTraits TraitsOf(const Measurement& measurement);
 // values than free parameters. A fit that did not converge or is not determined is returned, and says so in
 // Material::termination.
 Material Fit(const Recipe& recipe, const FitOptions& options, Measurement* measurement);
+
+// What an automatic choice turns to where its first result shows that it was wrong: an in-plane measurement does not
+// see the lobe's width across the plane, which scales the values as f0 does; where f0 ends at 1 they become one free
+// scale. Nothing: keep the result.
+std::optional<Recipe> AutomaticAlternative(const Recipe& recipe, const Material& material);
 
 }  // namespace lobefit

@@ -1,5 +1,6 @@
 #include "lobefit/io/write_csv.h"
 
+#include <charconv>
 #include <ostream>
 
 #include "lobefit/base/file.h"
@@ -9,8 +10,16 @@
 namespace lobefit {
 
 void WriteCsv(const Measurement& measurement, const std::vector<std::string>& comments,
-              const std::filesystem::path& path) {
+              const std::filesystem::path& path, int digits) {
   const Samples& samples = measurement.samples;
+  const auto number = [&](double value) {
+    if (digits >= 17) return FormatDouble(value);
+    char buffer[40];
+    const std::to_chars_result end =
+        std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::general, digits);
+    return std::string(buffer, end.ptr);
+  };
+  const auto degrees = [&](double radians) { return number(RadiansToDegrees(radians)); };
   WriteFileAtomically(path, [&](std::ostream& out) {
     for (const std::string& comment : comments) out << "# " << comment << '\n';
     out << "# angle-unit: deg\n# value-kind: f\n# incident: towards\n";
@@ -20,9 +29,9 @@ void WriteCsv(const Measurement& measurement, const std::vector<std::string>& co
     out << '\n';
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const Vec3 wi = samples.wi(i), wo = samples.wo(i);
-      out << FormatDouble(RadiansToDegrees(PolarAngle(wi))) << ',' << FormatDouble(RadiansToDegrees(Azimuth(wi))) << ','
-          << FormatDouble(RadiansToDegrees(PolarAngle(wo))) << ',' << FormatDouble(RadiansToDegrees(Azimuth(wo)));
-      for (const std::vector<double>& values : samples.values) out << ',' << FormatDouble(values[i]);
+      out << degrees(PolarAngle(wi)) << ',' << degrees(Azimuth(wi)) << ',' << degrees(PolarAngle(wo)) << ','
+          << degrees(Azimuth(wo));
+      for (const std::vector<double>& values : samples.values) out << ',' << number(values[i]);
       out << '\n';
     }
   });

@@ -13,6 +13,6 @@ namespace lobefit {
 // back; the header lines state unit, value kind and direction sense. `comments` become comment lines at the top
 // (without their "# ").
 void WriteCsv(const Measurement& measurement, const std::vector<std::string>& comments,
-              const std::filesystem::path& path);
+              const std::filesystem::path& path, int digits = 17);
 
 }  // namespace lobefit
