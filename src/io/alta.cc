@@ -133,7 +133,8 @@ void ReadInput(const InputFile& file, const Header& header, std::size_t inputs, 
 
 void ReadOutput(const InputFile& file, const Header& header, const ReadOptions& options, Layout* layout) {
   const Entry* entry = Find(header, "PARAM_OUT");
-  const std::vector<std::string_view> words = SplitBlanks(entry == nullptr ? "UNKNOWN_OUTPUT" : entry->value);
+  const std::string stated = entry == nullptr ? "UNKNOWN_OUTPUT" : entry->value;
+  const std::vector<std::string_view> words = SplitBlanks(stated);
   const std::string name(words.empty() ? "UNKNOWN_OUTPUT" : words[0]);
   const std::size_t line = entry == nullptr ? std::max<std::size_t>(header.end_line, 1) : entry->line;
   for (const std::string_view word : words) {
