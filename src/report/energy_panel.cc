@@ -20,7 +20,8 @@ struct Energy {
 };
 
 void Draw(const ReportData& data, const Energy& energy, Canvas* canvas, const Box& content) {
-  const Box frame = Inset(content, 52, 4, 4, 118);
+  const Box room = Inset(content, 52, 4, 4, 118);
+  const Box frame = {room.x, room.y, room.width, std::min(room.height, 0.8 * room.width)};
   const Range angles = {0, 90, false}, values = {0, energy.high, false};
   const Axes axes(frame, angles, values);
   const std::vector<Tick> x_ticks = AngleTicks(0, 90, 4), y_ticks = LinearTicks(0, energy.high, 5);
@@ -56,7 +57,8 @@ void Draw(const ReportData& data, const Energy& energy, Canvas* canvas, const Bo
   entry("its lobe with F = 1: what one bounce keeps", {{style::kSecondary, 1, 1, 6, 4}});
   entry("weak furnace of its masking; 1 is exact", {{style::kInk, 1, 1, 2, 3}});
   const double most = energy.high;
-  if (most > 1.06) entry("albedo above 1: the model creates energy", {{style::kWarning, 2}});
+  if (most > 1.06)
+    canvas->Text({content.x, y}, "An albedo above 1: the model creates energy.", style::Note(style::kWarning));
 }
 
 }  // namespace
@@ -80,7 +82,7 @@ std::optional<Panel> EnergyPanel(const ReportData& data) {
     energy->furnace.push_back(WeakFurnace(material.model, values, 0, wi));
     most = std::max(most, energy->bounce.back());
   }
-  energy->high = most <= 1.02 ? 1.05 : std::min(most * 1.08, 4.0);
+  energy->high = most <= 1.02 ? 1.05 : most * 1.08;
   Panel panel;
   panel.id = "energy";
   panel.title = "Energy";

@@ -10,7 +10,7 @@
 #include "lobefit/base/parallel.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
-#include "lobefit/report/axes.h"
+#include "lobefit/report/field_image.h"
 #include "lobefit/report/panel.h"
 #include "lobefit/report/scatter.h"
 #include "lobefit/report/style.h"
@@ -23,12 +23,11 @@ constexpr std::size_t kMostMaps = 4;
 constexpr std::size_t kFewest = 60;   // samples of an incident direction
 constexpr double kLeastCover = 0.25;  // share of the hemisphere that the samples must speak for
 constexpr std::size_t kMostPoints = 20000;
-constexpr float kMostRatio = 4;  // of the logarithm
 
 // One incident direction: values at the pixels of a disc whose radius is theta_o; NaN where nothing is known.
 struct Map {
   Vec3 stays;  // the direction that stays, as drawn
-  std::vector<float> measured, fitted, log_ratio;
+  FieldImage image = FieldImage(kSize, kSize);
   double cover = 0;
 };
 
@@ -79,9 +78,7 @@ Map MakeMap(const ReportData& data, const std::vector<std::uint32_t>& members, c
     Vec3 sweeps = outgoing ? samples.wi(i) : samples.wo(i);
     const auto value = static_cast<float>(data.Display(samples.values, i));
     for (std::size_t c = 0; c < data.channels(); ++c) sample_f[c] = static_cast<double>(data.fitted_values[c][i]);
-    const auto fitted = static_cast<float>(data.Display(sample_f));
-    const float ratio =
-        value > 0 && fitted > 0 ? std::clamp(std::log(value / fitted), -kMostRatio, kMostRatio) : -kMostRatio;
+    const float ratio = LogRatioOf(data.Display(samples.values, i), data.Display(sample_f));
     if (isotropic) {
       // The plane of incidence to the x axis; a table that knows no azimuth is taken as mirror symmetric.
       sweeps = RotateZ(sweeps, kPi - std::atan2(fixed.y, fixed.x));
@@ -95,34 +92,33 @@ Map MakeMap(const ReportData& data, const std::vector<std::uint32_t>& members, c
   }
   const float reach = Reach(points);
   const ScatterField field(std::move(points), 2, reach);
-  map.measured.assign(kSize * kSize, std::numeric_limits<float>::quiet_NaN());
-  map.fitted = map.log_ratio = map.measured;
   std::vector<double> f_r(data.channels());
-  int inside = 0, covered = 0;
+  int inside = 0;
+  std::vector<std::uint8_t> near(static_cast<std::size_t>(kSize * kSize));
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
       const Vec3 w = PixelDirection(column, row);
       if (w.z <= 0) continue;
       ++inside;
-      const auto pixel = static_cast<std::size_t>(row * kSize + column);
+      const std::size_t pixel = map.image.At(column, row);
       data.fitted.Evaluate(outgoing ? w : map.stays, outgoing ? map.stays : w, f_r.data());
-      map.fitted[pixel] = static_cast<float>(data.Display(f_r));
+      map.image.fitted[pixel] = static_cast<float>(data.Display(f_r));
       std::array<std::uint32_t, 4> indices;
       std::array<float, 4> weights;
-      const int have = field.Find(DiscPoint(w), &indices, &weights);
-      if (have == 0) continue;
-      ++covered;
+      bool is_near = false;
+      const int have = field.Find(DiscPoint(w), &indices, &weights, &is_near);
+      near[pixel] = is_near ? 1 : 0;
       float sum = 0, ratio = 0;
       for (std::size_t k = 0; k < static_cast<std::size_t>(have); ++k) {
         sum += weights[k] * values[indices[k]];
         ratio += weights[k] * ratios[indices[k]];
       }
-      map.measured[pixel] = sum;
+      map.image.measured[pixel] = sum;
       // Between the ratios of samples, not the ratio of a value between samples: steep lobes would leave patterns.
-      map.log_ratio[pixel] = ratio;
+      map.image.log_ratio[pixel] = ratio;
     }
   }
-  map.cover = static_cast<double>(covered) / inside;
+  map.cover = static_cast<double>(KeepNear(near, &map.image)) / inside;
   return map;
 }
 
@@ -162,49 +158,10 @@ std::vector<Map> MakeMaps(const ReportData& data) {
 struct Maps {
   const ReportData& data;
   std::vector<Map> maps;
-  Range values;
-  double ratio = 2;
 };
 
-void FindRanges(Maps* maps) {
-  std::vector<double> values, ratios;
-  double high = 0;
-  for (const Map& map : maps->maps) {
-    for (std::size_t i = 0; i < map.measured.size(); i += 3) {
-      const float m = map.measured[i], f = map.fitted[i];
-      if (!(m > 0) || !(f > 0)) continue;
-      values.push_back(m);
-      high = std::max<double>(high, std::max(m, f));
-      ratios.push_back(std::fabs(map.log_ratio[i]));
-    }
-  }
-  double low = values.empty() ? high / 100 : Quantile(&values, 0.03);
-  low = std::clamp(low, high * 1e-5, high / 5);
-  if (!(high > 0)) low = 0.1, high = 1;
-  maps->values = {low, high, true};
-  const double spread = ratios.empty() ? 0.1 : Quantile(&ratios, 0.9);
-  maps->ratio = 10;
-  for (const double nice : {5.0, 3.0, 2.0, 1.5, 1.2, 1.1, 1.05}) {
-    if (std::log(nice) >= spread) maps->ratio = nice;
-  }
-}
-
-cv::Mat Picture(const std::vector<float>& values, const std::function<Rgb(float)>& color) {
-  cv::Mat picture(kSize, kSize, CV_8UC4);
-  for (int row = 0; row < kSize; ++row) {
-    for (int column = 0; column < kSize; ++column) {
-      const double x = column + 0.5 - kSize / 2.0, y = row + 0.5 - kSize / 2.0;
-      const float value = values[static_cast<std::size_t>(row * kSize + column)];
-      const Rgb c = std::isnan(value) ? style::kGrid : color(value);
-      const bool inside = std::hypot(x, y) < kSize / 2.0;
-      picture.at<cv::Vec4b>(row, column) = inside ? cv::Vec4b(c.r, c.g, c.b, 255) : cv::Vec4b(c.r, c.g, c.b, 0);
-    }
-  }
-  return picture;
-}
-
 void DrawDisc(Canvas* canvas, const cv::Mat& picture, const Box& box, const Vec3& stays, Rgb mark) {
-  canvas->Image(picture, box, true);
+  canvas->Image(RoundPicture(picture, static_cast<int>(std::lround(box.width * canvas->scale()))), box, false);
   const Point center = box.center();
   const double radius = box.width / 2;
   canvas->Ring(center, radius, {style::kSecondary, 1});
@@ -218,7 +175,7 @@ void DrawDisc(Canvas* canvas, const cv::Mat& picture, const Box& box, const Vec3
   canvas->Line({mirror.x, mirror.y - 4}, {mirror.x, mirror.y + 4}, {mark, 1});
 }
 
-constexpr double kLabel = 26, kHead = 20, kSpace = 12, kScales = 52;
+constexpr double kLabel = 26, kHead = 20, kSpace = 12;
 
 double DiscSize(double width, std::size_t count) {
   return std::min(240.0, (width - kLabel - kSpace * static_cast<double>(count - 1)) / static_cast<double>(count));
@@ -229,9 +186,11 @@ void Draw(const Maps& maps, Canvas* canvas, const Box& content) {
   const double size = DiscSize(content.width, std::max<std::size_t>(count, 3));
   const double used = size * static_cast<double>(count) + kSpace * static_cast<double>(count - 1);
   const double left = content.x + kLabel + std::max(0.0, (content.width - kLabel - used) / 2);
-  const double span = std::log(maps.values.high / maps.values.low), half = std::log(maps.ratio);
-  const auto sequential = [&](float v) { return SequentialColor(v > 0 ? std::log(v / maps.values.low) / span : 0); };
-  const auto diverging = [&](float v) { return DivergingColor(0.5 + v / (2 * half)); };
+  std::vector<const FieldImage*> images;
+  for (const Map& map : maps.maps) images.push_back(&map.image);
+  const FieldScale scale(images);
+  const auto value = [&scale](float v) { return scale.ValueColor(v); };
+  const auto ratio = [&scale](float v) { return scale.RatioColor(v); };
   const std::array<const char*, 3> names = {"measured", "fitted", "measured / fitted"};
   for (std::size_t k = 0; k < count; ++k) {
     const Map& map = maps.maps[k];
@@ -243,35 +202,24 @@ void Draw(const Maps& maps, Canvas* canvas, const Box& content) {
     canvas->Text({x + size / 2, content.y + 12}, label,
                  {.size = style::kBodySize, .color = style::kInk, .align = Align::kCenter, .markup = true});
     const auto place = [&](int row) { return Box{x, content.y + kHead + row * (size + kSpace), size, size}; };
-    DrawDisc(canvas, Picture(map.measured, sequential), place(0), map.stays, {255, 255, 255});
-    DrawDisc(canvas, Picture(map.fitted, sequential), place(1), map.stays, {255, 255, 255});
-    DrawDisc(canvas, Picture(map.log_ratio, diverging), place(2), map.stays, style::kInk);
+    DrawDisc(canvas, Picture(map.image.measured, kSize, kSize, value), place(0), map.stays, {255, 255, 255});
+    DrawDisc(canvas, Picture(map.image.fitted, kSize, kSize, value), place(1), map.stays, {255, 255, 255});
+    DrawDisc(canvas, Picture(map.image.log_ratio, kSize, kSize, ratio), place(2), map.stays, style::kInk);
   }
   for (int row = 0; row < 3; ++row) {
     canvas->Text({left - 14, content.y + kHead + row * (size + kSpace) + size / 2},
                  names[static_cast<std::size_t>(row)],
                  {.size = style::kBodySize, .color = style::kInk, .align = Align::kCenter, .upwards = true});
   }
-  const double y = content.y + kHead + 3 * (size + kSpace) + 14, width = std::min(320.0, (used - 60) / 2);
-  DrawColorScale(canvas, {left + 12, y, width, 9}, SequentialColor, maps.values,
-                 LogTicks(maps.values.low, maps.values.high, 5), "f_r  (1/sr)");
-  const double inner = std::sqrt(maps.ratio);
-  const std::vector<Tick> ticks = {{1 / maps.ratio, RatioText(1 / maps.ratio)},
-                                   {1 / inner, ""},
-                                   {1, "1"},
-                                   {inner, ""},
-                                   {maps.ratio, RatioText(maps.ratio)}};
-  DrawColorScale(canvas, {left + used - width - 14, y, width, 9}, DivergingColor, {1 / maps.ratio, maps.ratio, true},
-                 ticks, "measured / fitted");
+  scale.Draw(canvas, left, left + used, content.y + kHead + 3 * (size + kSpace));
 }
 
 }  // namespace
 
 std::optional<Panel> MapsPanel(const ReportData& data) {
   if (IsInPlane(data.measurement.samples)) return std::nullopt;
-  const auto maps = std::make_shared<Maps>(Maps{data, MakeMaps(data), {}, 2});
+  const auto maps = std::make_shared<Maps>(Maps{data, MakeMaps(data)});
   if (maps->maps.empty()) return std::nullopt;
-  FindRanges(maps.get());
   Panel panel;
   panel.id = "maps";
   panel.title = "All outgoing directions";
@@ -279,7 +227,7 @@ std::optional<Panel> MapsPanel(const ReportData& data) {
                    {},
                    "radius: polar angle, rings at 30° and 60°;  o retro, + mirror direction;  grey: no sample near"}};
   panel.height = [maps](Canvas*, double width) {
-    return kHead + 3 * (DiscSize(width, std::max<std::size_t>(maps->maps.size(), 3)) + kSpace) + kScales;
+    return kHead + 3 * (DiscSize(width, std::max<std::size_t>(maps->maps.size(), 3)) + kSpace) + FieldScale::kHeight;
   };
   panel.draw = [maps](Canvas* canvas, const Box& content) { Draw(*maps, canvas, content); };
   return panel;

@@ -35,6 +35,8 @@ std::optional<Panel> CurvesPanel(const ReportData& data);
 std::optional<Panel> ParametersPanel(const ReportData& data);
 std::optional<Panel> MapsPanel(const ReportData& data);
 std::optional<Panel> QualityPanel(const ReportData& data);
+std::optional<Panel> BurleyPanel(const ReportData& data);
+std::optional<Panel> SpherePanel(const ReportData& data);
 std::optional<Panel> NdfPanel(const ReportData& data);
 std::optional<Panel> ResidualsPanel(const ReportData& data);
 std::optional<Panel> EnergyPanel(const ReportData& data);

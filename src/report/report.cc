@@ -8,8 +8,9 @@
 namespace lobefit {
 
 const std::vector<PanelMaker>& PanelMakers() {
-  static const std::vector<PanelMaker> makers = {CurvesPanel, ParametersPanel, QualityPanel,   MapsPanel,
-                                                 NdfPanel,    EnergyPanel,     ResidualsPanel, CorrelationPanel};
+  static const std::vector<PanelMaker> makers = {CurvesPanel,    ParametersPanel, QualityPanel, MapsPanel,
+                                                 NdfPanel,       EnergyPanel,     SpherePanel,  BurleyPanel,
+                                                 ResidualsPanel, CorrelationPanel};
   return makers;
 }
 

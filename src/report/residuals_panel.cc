@@ -12,7 +12,7 @@
 namespace lobefit {
 namespace {
 
-constexpr std::size_t kColumns = 36, kRows = 64, kFewest = 20;
+constexpr std::size_t kMostColumns = 36, kFewestColumns = 8, kRows = 64, kFewest = 20;
 constexpr std::size_t kTaken = 300000;  // residuals in all
 constexpr std::array<double, 5> kQuantiles = {0.05, 0.25, 0.5, 0.75, 0.95};
 
@@ -20,16 +20,17 @@ constexpr std::array<double, 5> kQuantiles = {0.05, 0.25, 0.5, 0.75, 0.95};
 struct Diagram {
   std::string label;
   Range x;
-  std::vector<std::vector<double>> columns = std::vector<std::vector<double>>(kColumns);
+  std::vector<std::vector<double>> columns;
 
   void Add(double at, double residual) {
     const double t = x.logarithmic ? std::log(std::max(at, x.low) / x.low) / std::log(x.high / x.low)
                                    : (at - x.low) / (x.high - x.low);
     if (!(t >= 0) || t > 1) return;
-    columns[std::min(kColumns - 1, static_cast<std::size_t>(t * kColumns))].push_back(residual);
+    const auto column = static_cast<std::size_t>(t * static_cast<double>(columns.size()));
+    columns[std::min(columns.size() - 1, column)].push_back(residual);
   }
   double Center(std::size_t column) const {
-    const double t = (static_cast<double>(column) + 0.5) / kColumns;
+    const double t = (static_cast<double>(column) + 0.5) / static_cast<double>(columns.size());
     return x.logarithmic ? x.low * std::pow(x.high / x.low, t) : x.low + t * (x.high - x.low);
   }
 };
@@ -50,9 +51,12 @@ void Fill(const ReportData& data, Residuals* residuals) {
     if (f > 0) values.push_back(f);
   }
   const double low = Quantile(&values, 0.01), high = Quantile(&values, 0.999);
-  residuals->diagrams[0] = {"θ_h  (degrees)", {1, 90, true}};
-  residuals->diagrams[1] = {"θ_i  (degrees)", {0, 90, false}};
-  residuals->diagrams[2] = {"fitted f_r  (1/sr)", {low, std::max(high, 2 * low), true}};
+  residuals->diagrams[0] = {"θ_h  (degrees)", {1, 90, true}, {}};
+  residuals->diagrams[1] = {"θ_i  (degrees)", {0, 90, false}, {}};
+  residuals->diagrams[2] = {"fitted f_r  (1/sr)", {low, std::max(high, 2 * low), true}, {}};
+  // Enough samples for the quantiles of a column.
+  const std::size_t columns = std::clamp(count / step / 120, kFewestColumns, kMostColumns);
+  for (Diagram& diagram : residuals->diagrams) diagram.columns.resize(columns);
   for (std::size_t k = 0; k < count; k += step) {
     const std::size_t c = k % data.channels(), i = k / data.channels();
     double ratio = data.LogRatio(c, i);
@@ -75,11 +79,12 @@ void Fill(const ReportData& data, Residuals* residuals) {
 // The column that stands for each: itself, or the nearest one with samples, up to four away. Listed angles leave
 // columns empty between them.
 std::vector<std::size_t> Filled(const Diagram& diagram) {
-  std::vector<std::size_t> filled(kColumns, kColumns);
-  for (std::size_t c = 0; c < kColumns; ++c) {
-    for (std::size_t r = 0; r <= 4 && filled[c] == kColumns; ++r) {
+  const std::size_t count = diagram.columns.size();
+  std::vector<std::size_t> filled(count, count);
+  for (std::size_t c = 0; c < count; ++c) {
+    for (std::size_t r = 0; r <= 4 && filled[c] == count; ++r) {
       if (c >= r && diagram.columns[c - r].size() >= kFewest) filled[c] = c - r;
-      if (filled[c] == kColumns && c + r < kColumns && diagram.columns[c + r].size() >= kFewest) filled[c] = c + r;
+      if (filled[c] == count && c + r < count && diagram.columns[c + r].size() >= kFewest) filled[c] = c + r;
     }
   }
   return filled;
@@ -87,10 +92,11 @@ std::vector<std::size_t> Filled(const Diagram& diagram) {
 
 void DrawDiagram(const Diagram& diagram, double ratio, Canvas* canvas, const Box& frame, bool labels) {
   const double reach = std::pow(ratio, 1.5), span = std::log(reach);
+  const std::size_t count = diagram.columns.size();
   const Axes axes(frame, diagram.x, {1 / reach, reach, true});
   const std::vector<std::size_t> filled = Filled(diagram);
-  for (std::size_t c = 0; c < kColumns; ++c) {
-    if (filled[c] == kColumns) continue;
+  for (std::size_t c = 0; c < count; ++c) {
+    if (filled[c] == count) continue;
     const std::vector<double>& column = diagram.columns[filled[c]];
     std::vector<double> rows(kRows);
     for (const double r : column) {
@@ -98,11 +104,11 @@ void DrawDiagram(const Diagram& diagram, double ratio, Canvas* canvas, const Box
       rows[std::min(kRows - 1, static_cast<std::size_t>(std::clamp(t, 0.0, 1.0) * kRows))] += 1;
     }
     const double most = *std::max_element(rows.begin(), rows.end());
-    const double x = frame.x + frame.width * static_cast<double>(c) / kColumns;
+    const double x = frame.x + frame.width * static_cast<double>(c) / static_cast<double>(count);
     for (std::size_t r = 0; r < kRows; ++r) {
       if (rows[r] == 0) continue;
       const double y = frame.bottom() - frame.height * static_cast<double>(r + 1) / kRows;
-      canvas->Fill({x, y, frame.width / kColumns, frame.height / kRows}, style::kBlue,
+      canvas->Fill({x, y, frame.width / static_cast<double>(count), frame.height / kRows}, style::kBlue,
                    0.05 + 0.5 * std::sqrt(rows[r] / most));
     }
   }
@@ -113,8 +119,8 @@ void DrawDiagram(const Diagram& diagram, double ratio, Canvas* canvas, const Box
   const Canvas::Clip clip(canvas, Inset(frame, -60, 0, -30, -60));
   for (std::size_t q = 0; q < kQuantiles.size(); ++q) {
     std::vector<Point> line;
-    for (std::size_t c = 0; c < kColumns; ++c) {
-      if (filled[c] == kColumns) line.push_back({std::nan(""), 0});
+    for (std::size_t c = 0; c < count; ++c) {
+      if (filled[c] == count) line.push_back({std::nan(""), 0});
       if (filled[c] != c) continue;
       std::vector<double> column = diagram.columns[c];
       line.push_back(axes.Map(diagram.Center(c), std::exp(std::clamp(Quantile(&column, kQuantiles[q]), -span, span))));

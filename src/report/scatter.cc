@@ -94,14 +94,14 @@ ScatterField::ScatterField(std::vector<ScatterPoint> points, int dimensions, flo
   }
 }
 
-int ScatterField::Find(const ScatterPoint& at, std::array<std::uint32_t, 4>* indices,
-                       std::array<float, 4>* weights) const {
+int ScatterField::Find(const ScatterPoint& at, std::array<std::uint32_t, 4>* indices, std::array<float, 4>* weights,
+                       bool* near) const {
   std::array<ScatterTree::Neighbour, ScatterTree::kMost> found;
   const int have = tree_.Nearest(at, 4, &found);
   // The farthest reach of the four counts: where dense rows meet sparse ones the nearest alone would leave gaps.
   float reach2 = 0;
   for (int k = 0; k < have; ++k) reach2 = std::max(reach2, reach2_[found[static_cast<std::size_t>(k)].index]);
-  if (have == 0 || found[0].distance2 > reach2) return 0;
+  *near = have > 0 && found[0].distance2 <= reach2;
   float sum = 0;
   for (int k = 0; k < have; ++k) {
     const auto i = static_cast<std::size_t>(k);

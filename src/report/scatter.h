@@ -46,8 +46,10 @@ class ScatterField {
   // `least_reach`: a point speaks for at least this distance around it.
   ScatterField(std::vector<ScatterPoint> points, int dimensions, float least_reach);
 
-  // Weights of at most four points for `at`; returns their number, 0 where nothing is known.
-  int Find(const ScatterPoint& at, std::array<std::uint32_t, 4>* indices, std::array<float, 4>* weights) const;
+  // Weights of at most four points for `at`; returns their number. `near`: false where the nearest point is farther
+  // away than points stand from each other there.
+  int Find(const ScatterPoint& at, std::array<std::uint32_t, 4>* indices, std::array<float, 4>* weights,
+           bool* near) const;
 
  private:
   ScatterTree tree_;

@@ -1,0 +1,82 @@
+#include "lobefit/report/isotropic_lookup.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lobefit/math/directions.h"
+
+namespace lobefit {
+namespace {
+
+// Cells along each coordinate; phi_d matters least.
+constexpr std::array<int, 3> kCells = {90, 60, 12};
+constexpr float kPhiScale = 0.35F;
+// In units of the whole range of theta_d: about five degrees, or the distance of two rows of a sparse table.
+constexpr float kReach = 0.085F;
+
+struct Coordinates {
+  double h, d, phi;  // each in [0, 1]
+};
+
+Coordinates CoordinatesOf(const Vec3& wi, const Vec3& wo) {
+  const HalfDifference angles = ToHalfDifference(wi, wo);
+  double phi = std::fabs(std::remainder(angles.phi_d, kPi));  // [0, pi / 2]
+  return {std::sqrt(std::min(1.0, angles.theta_h / (kPi / 2))), std::min(1.0, angles.theta_d / (kPi / 2)),
+          phi / (kPi / 2)};
+}
+
+ScatterPoint PointOf(const Coordinates& c) {
+  return {static_cast<float>(c.h), static_cast<float>(c.d), kPhiScale * static_cast<float>(c.phi), 0};
+}
+
+int Cell(double t, int count) { return std::min(count - 1, static_cast<int>(t * count)); }
+
+}  // namespace
+
+IsotropicLookup::IsotropicLookup(const Measurement& measurement) : channels_(measurement.channels.size()) {
+  const Samples& samples = measurement.samples;
+  const std::size_t cells = static_cast<std::size_t>(kCells[0] * kCells[1] * kCells[2]), width = 3 + channels_;
+  std::vector<float> sums(cells * width);
+  std::vector<std::uint32_t> counts(cells);
+  // A million samples fill the cells many times over.
+  constexpr std::size_t kTaken = 500000;
+  const std::size_t step = 1 + samples.size() / kTaken;
+  for (std::size_t i = 0; i < samples.size(); i += step) {
+    const Coordinates c = CoordinatesOf(samples.wi(i), samples.wo(i));
+    const int at = (Cell(c.h, kCells[0]) * kCells[1] + Cell(c.d, kCells[1])) * kCells[2] + Cell(c.phi, kCells[2]);
+    const auto cell = static_cast<std::size_t>(at);
+    float* sum = &sums[cell * width];
+    sum[0] += static_cast<float>(c.h), sum[1] += static_cast<float>(c.d), sum[2] += static_cast<float>(c.phi);
+    for (std::size_t k = 0; k < channels_; ++k) sum[3 + k] += static_cast<float>(samples.values[k][i]);
+    ++counts[cell];
+  }
+  std::vector<ScatterPoint> points;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    if (counts[cell] == 0) continue;
+    const float* sum = &sums[cell * width];
+    const float share = 1.0F / static_cast<float>(counts[cell]);
+    points.push_back({sum[0] * share, sum[1] * share, kPhiScale * sum[2] * share, 0});
+    for (std::size_t k = 0; k < channels_; ++k) values_.push_back(sum[3 + k] * share);
+  }
+  tree_ = std::make_unique<ScatterTree>(std::move(points), 3);
+}
+
+bool IsotropicLookup::Find(const Vec3& wi, const Vec3& wo, double* f_r) const {
+  std::array<ScatterTree::Neighbour, ScatterTree::kMost> found;
+  const int have = tree_->Nearest(PointOf(CoordinatesOf(wi, wo)), 6, &found);
+  if (have == 0 || found[0].distance2 > kReach * kReach) return false;
+  std::fill(f_r, f_r + channels_, 0.0);
+  double total = 0;
+  for (int k = 0; k < have; ++k) {
+    const ScatterTree::Neighbour& near = found[static_cast<std::size_t>(k)];
+    const double weight = 1 / (static_cast<double>(near.distance2) + 1e-6);
+    total += weight;
+    for (std::size_t c = 0; c < channels_; ++c)
+      f_r[c] += weight * static_cast<double>(values_[near.index * channels_ + c]);
+  }
+  for (std::size_t c = 0; c < channels_; ++c) f_r[c] /= total;
+  return true;
+}
+
+}  // namespace lobefit

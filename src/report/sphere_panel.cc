@@ -1,0 +1,221 @@
+// A sphere of the material under one light and under a sky, measured beside fitted: isotropic measurements that are
+// dense enough.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "lobefit/base/parallel.h"
+#include "lobefit/core/slope_ndf.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/report/color.h"
+#include "lobefit/report/field_image.h"
+#include "lobefit/report/isotropic_lookup.h"
+#include "lobefit/report/panel.h"
+#include "lobefit/report/style.h"
+
+namespace lobefit {
+namespace {
+
+constexpr int kLightSize = 220, kSkySize = 112;
+constexpr int kSkySamples = 48;       // half from the lobe, half by the cosine
+constexpr double kLeastCover = 0.97;  // of the lit sphere that the samples must speak for
+
+using Color = std::array<double, 3>;
+// f_r of one pair of directions; false where it is not known.
+using Brdf = std::function<bool(const Vec3& wi, const Vec3& wo, double* f_r)>;
+
+struct Frame {
+  Vec3 x, y, n;
+  Vec3 ToLocal(const Vec3& w) const { return {Dot(w, x), Dot(w, y), Dot(w, n)}; }
+  Vec3 ToWorld(const Vec3& w) const { return w.x * x + w.y * y + w.z * n; }
+};
+
+// World: x right, y up, z to the viewer. The tangent runs around the vertical axis.
+bool SphereFrame(int column, int row, int size, Frame* frame) {
+  const double x = (column + 0.5) / size * 2 - 1, y = 1 - (row + 0.5) / size * 2, r2 = x * x + y * y;
+  if (r2 >= 1) return false;
+  frame->n = {x, y, std::sqrt(1 - r2)};
+  const Vec3 up = {0, 1, 0};
+  frame->x = Normalized(Cross(up, frame->n));
+  frame->y = Cross(frame->n, frame->x);
+  return true;
+}
+
+struct Sphere {
+  int size = 0;
+  std::vector<Color> color;
+  std::vector<std::uint8_t> known;
+};
+
+Sphere UnderLight(const Brdf& brdf, const ChannelColor& to_color, std::size_t channels) {
+  const Vec3 light = Normalized(Vec3{-0.45, 0.6, 0.75}), view = {0, 0, 1};
+  Sphere sphere = {kLightSize, std::vector<Color>(kLightSize * kLightSize, Color{0, 0, 0}),
+                   std::vector<std::uint8_t>(kLightSize * kLightSize, 1)};
+  std::vector<double> f_r(channels);
+  for (int row = 0; row < kLightSize; ++row) {
+    for (int column = 0; column < kLightSize; ++column) {
+      Frame frame;
+      if (!SphereFrame(column, row, kLightSize, &frame)) continue;
+      const Vec3 wi = frame.ToLocal(light), wo = frame.ToLocal(view);
+      if (wi.z <= 0 || wo.z <= 0) continue;
+      const auto pixel = static_cast<std::size_t>(row * kLightSize + column);
+      if (!brdf(wi, wo, f_r.data())) {
+        sphere.known[pixel] = 0;
+        continue;
+      }
+      const Color c = to_color.Linear(f_r.data());
+      for (std::size_t k = 0; k < 3; ++k) sphere.color[pixel][k] = c[k] * wi.z * kPi;
+    }
+  }
+  return sphere;
+}
+
+// Radiance of the sky: bright horizon, blue zenith, dark ground, a broad glow around the sun.
+Color Sky(const Vec3& w, bool grey) {
+  const double up = w.y, t = std::clamp(up, 0.0, 1.0), blend = 1 / (1 + std::exp(-up * 24));
+  const Vec3 sun = Normalized(Vec3{-0.45, 0.6, 0.75});
+  const double glow = 5 * std::exp(24 * (Dot(w, sun) - 1));
+  const Color zenith = {0.30, 0.50, 0.95}, horizon = {1.0, 0.97, 0.92}, ground = {0.16, 0.14, 0.12};
+  Color color;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double above = horizon[k] + (zenith[k] - horizon[k]) * std::sqrt(t);
+    color[k] = ground[k] + (above - ground[k]) * blend + glow * (k == 2 ? 0.85 : 1.0);
+  }
+  if (grey) color.fill(0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]);
+  return color;
+}
+
+// One point set for all pixels: the sky is smooth, and both spheres see the same directions.
+Vec2 Point2(int i) { return {(i + 0.5) / (kSkySamples / 2.0), std::fmod(0.5 + 0.6180339887498949 * i, 1.0)}; }
+
+// Light comes from directions drawn from the fitted lobe (facets by the density of slopes) and by the cosine, weighted
+// by the balance heuristic.
+Sphere UnderSky(const Brdf& brdf, const ReportData& data, const ChannelColor& to_color) {
+  const SlopeFrame lobe(data.fitted.lobe_shapes()[0]);
+  const bool grey = data.channels() < 3;
+  const Vec3 view = {0, 0, 1};
+  Sphere sphere = {kSkySize, std::vector<Color>(kSkySize * kSkySize, Color{0, 0, 0}),
+                   std::vector<std::uint8_t>(kSkySize * kSkySize, 1)};
+  ParallelFor(kSkySize, data.threads, [&](std::size_t row) {
+    std::vector<double> f_r(data.channels());
+    for (int column = 0; column < kSkySize; ++column) {
+      Frame frame;
+      if (!SphereFrame(column, static_cast<int>(row), kSkySize, &frame)) continue;
+      const Vec3 wo = frame.ToLocal(view);
+      const std::size_t pixel = row * kSkySize + static_cast<std::size_t>(column);
+      Color sum = {0, 0, 0};
+      int unknown = 0, taken = 0;
+      for (int i = 0; i < kSkySamples; ++i) {
+        const Vec2 u = Point2(i / 2);
+        const double phi = 2 * kPi * u.y;
+        Vec3 wi;
+        if (i % 2 == 0) {
+          const double rho = std::sqrt(u.x / (1 - u.x));
+          const double sx = lobe.slope_x + lobe.a * rho * std::cos(phi),
+                       sy = lobe.slope_y + lobe.b * rho * std::cos(phi) + lobe.c * rho * std::sin(phi);
+          wi = Reflect(wo, Normalized(Vec3{-sx, -sy, 1.0}));
+        } else {
+          const double r = std::sqrt(u.x);
+          wi = {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x)};
+        }
+        if (wi.z <= 0.001) continue;
+        const Vec3 h = HalfVector(wi, wo);
+        const double density =
+            (SlopeD(lobe, h) * h.z / (4 * std::max(1e-9, Dot(wo, h))) + wi.z * kInvPi) * (kSkySamples / 2.0);
+        ++taken;
+        if (!brdf(wi, wo, f_r.data())) {
+          ++unknown;
+          continue;
+        }
+        const Color f = to_color.Linear(f_r.data()), radiance = Sky(frame.ToWorld(wi), grey);
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += f[k] * radiance[k] * wi.z / density;
+      }
+      sphere.color[pixel] = sum;
+      sphere.known[pixel] = 4 * unknown <= taken ? 1 : 0;
+    }
+  });
+  return sphere;
+}
+
+struct Spheres {
+  std::array<Sphere, 4> sphere;  // measured and fitted under the light, under the sky
+  std::array<double, 2> exposure;
+};
+
+double Exposure(const Sphere& fitted) {
+  std::vector<double> brightest;
+  for (const Color& c : fitted.color) {
+    const double v = std::max({c[0], c[1], c[2]});
+    if (v > 0) brightest.push_back(v);
+  }
+  if (brightest.empty()) return 1;
+  // Highlights may saturate, but not so far that the rest is black.
+  std::vector<double> copy = brightest;
+  const double high = Quantile(&brightest, 0.97), middle = Quantile(&copy, 0.5);
+  return std::min(0.8 / std::max(high, 1e-9), 0.5 / std::max(middle, 1e-9)) * 1.15;
+}
+
+cv::Mat Rendered(const Sphere& sphere, double exposure) {
+  cv::Mat picture(sphere.size, sphere.size, CV_8UC4);
+  for (int row = 0; row < sphere.size; ++row) {
+    for (int column = 0; column < sphere.size; ++column) {
+      const auto i = static_cast<std::size_t>(row * sphere.size + column);
+      const Rgb c = sphere.known[i] != 0 ? ToScreen(sphere.color[i], exposure) : style::kRule;
+      picture.at<cv::Vec4b>(row, column) = {c.r, c.g, c.b, 255};
+    }
+  }
+  return picture;
+}
+
+constexpr double kGap = 14, kGroupGap = 34;
+
+double Side(double width) { return std::min(260.0, (width - 2 * kGap - kGroupGap) / 4); }
+
+void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
+  const double size = Side(content.width), used = 4 * size + 2 * kGap + kGroupGap;
+  double x = content.x + std::max(0.0, (content.width - used) / 2);
+  const std::array<const char*, 4> names = {"measured", "fitted", "measured", "fitted"};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Box box = {x, content.y + 42, size, size};
+    const cv::Mat picture = Rendered(spheres.sphere[k], spheres.exposure[k / 2]);
+    canvas->Image(RoundPicture(picture, static_cast<int>(std::lround(size * canvas->scale()))), box, false);
+    canvas->Text({box.center().x, content.y + 34}, names[k], style::Body(style::kInk, Align::kCenter));
+    if (k % 2 == 0) {
+      canvas->Text({x + size + kGap / 2, content.y + 14}, k == 0 ? "one light, upper left" : "sky with a low sun",
+                   style::Note(style::kSecondary, Align::kCenter));
+    }
+    x += size + (k == 1 ? kGroupGap : kGap);
+  }
+}
+
+}  // namespace
+
+std::optional<Panel> SpherePanel(const ReportData& data) {
+  if (!data.measurement.isotropic || data.material.model.lobes.empty()) return std::nullopt;
+  const ChannelColor to_color(data.measurement.channels);
+  const IsotropicLookup lookup(data.measurement);
+  const Brdf measured = [&lookup](const Vec3& wi, const Vec3& wo, double* f_r) { return lookup.Find(wi, wo, f_r); };
+  const Brdf fitted = [&data](const Vec3& wi, const Vec3& wo, double* f_r) {
+    data.fitted.Evaluate(wi, wo, f_r);
+    return true;
+  };
+  const auto spheres = std::make_shared<Spheres>();
+  spheres->sphere[0] = UnderLight(measured, to_color, data.channels());
+  const auto known =
+      static_cast<double>(std::count(spheres->sphere[0].known.begin(), spheres->sphere[0].known.end(), 1));
+  if (known < kLeastCover * static_cast<double>(spheres->sphere[0].known.size())) return std::nullopt;
+  spheres->sphere[1] = UnderLight(fitted, to_color, data.channels());
+  spheres->sphere[2] = UnderSky(measured, data, to_color);
+  spheres->sphere[3] = UnderSky(fitted, data, to_color);
+  spheres->exposure = {Exposure(spheres->sphere[0]), Exposure(spheres->sphere[2])};
+  Panel panel;
+  panel.id = "sphere";
+  panel.title = "As it looks";
+  panel.height = [](Canvas*, double width) { return 42 + Side(width) + 8; };
+  panel.draw = [spheres](Canvas* canvas, const Box& content) { Draw(*spheres, canvas, content); };
+  return panel;
+}
+
+}  // namespace lobefit
