@@ -50,7 +50,7 @@ std::vector<Parameter> Parameters(const Model& model) {
     }
   }
   if (model.diffuse == Diffuse::kLambert) {
-    parameters.push_back({"diffuse", "diffuse", "1", 0, 10, ParameterGroup::kDiffuse, true, true,
+    parameters.push_back({"diffuse", "diffuse", "1", 0, 1, ParameterGroup::kDiffuse, true, true,
                           "albedo of the Lambertian part, pi f_r"});
   }
   return parameters;

@@ -46,7 +46,10 @@ struct Parameter {
   std::string name;       // inside, angles in radians: "theta_x"; the second lobe's are prefixed: "lobe2.theta_x"
   std::string json_name;  // outside, angles in degrees: "theta_x_deg"
   std::string unit;       // of the outside value: "deg", "1" for none
-  double low = 0;         // range, in inside units
+  // Bounds of a fit unless a recipe says otherwise, inside units. A recipe may narrow them; those of amplitudes and
+  // albedos, which say that no surface reflects more than it receives, it may widen too (values that are not
+  // calibrated).
+  double low = 0;
   double high = 0;
   ParameterGroup group = ParameterGroup::kShape;
   bool per_channel = false;

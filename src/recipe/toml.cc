@@ -112,7 +112,8 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
     recipe.high = *array->get(1)->value<double>() * factor;
     if (!(*recipe.low < *recipe.high))
       place.Fail(bounds->source(), fmt::format("bounds of '{}': the first must be below the second", name));
-    if (*recipe.low < parameter.low - 1e-12 || *recipe.high > parameter.high + 1e-12) {
+    const bool wider = parameter.group == ParameterGroup::kShape && *recipe.high > parameter.high + 1e-12;
+    if (*recipe.low < parameter.low - 1e-12 || wider) {
       place.Fail(bounds->source(), fmt::format("bounds of '{}' leave its range [{:g}, {:g}]", name,
                                                parameter.low / factor, parameter.high / factor));
     }

@@ -1,0 +1,179 @@
+#include "lobefit/fit/fit.h"
+
+#include <cmath>
+
+#include "tests/support/synthetic.h"
+#include <gtest/gtest.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/math/directions.h"
+
+namespace lobefit {
+namespace {
+
+SyntheticCase BrushedMetal() {
+  return OneLobe(Ndf::kEllipsoid, 0.35, 0.11, 0, 3, 25, {0.71, 0.66, 0.58}, {0.02, 0.018, 0.015});
+}
+
+// |value - truth| in units of the larger of 1 and the truth, for angles radians.
+void ExpectRecovered(const Material& material, const SyntheticCase& truth, double tolerance) {
+  for (std::size_t i = 0; i < truth.values.size(); ++i) {
+    for (std::size_t c = 0; c < truth.values[i].size(); ++c) {
+      const double expected = truth.values[i][c];
+      const double scale = expected != 0 ? std::fabs(expected) : 1.0;
+      EXPECT_NEAR(material.parameters[i].values[c], expected, tolerance * scale) << i << " " << c;
+    }
+  }
+}
+
+TEST(Fit, RecoversANoiseFreeMaterial) {
+  Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0, 1);
+  const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+  EXPECT_TRUE(material.termination.converged);
+  EXPECT_TRUE(material.termination.determined);
+  EXPECT_TRUE(material.degenerate.empty());
+  ExpectRecovered(material, BrushedMetal(), 1e-8);
+}
+
+TEST(Fit, RecoversANoisyMaterialWithinItsErrors) {
+  Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0.05, 1);
+  const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+  const SyntheticCase truth = BrushedMetal();
+  for (std::size_t i = 0; i < truth.values.size(); ++i) {
+    for (std::size_t c = 0; c < truth.values[i].size(); ++c) {
+      const double z =
+          (material.parameters[i].values[c] - truth.values[i][c]) / material.parameters[i].standard_error[c];
+      EXPECT_LT(std::fabs(z), 3.5) << i << " " << c;  // 11 parameters: one in 200 seeds exceeds it
+    }
+  }
+}
+
+// Spread over repeated trials against the reported errors: the ratio of variances has a relative standard deviation of
+// sqrt(2 / trials).
+TEST(Fit, StandardErrorsMatchTheSpreadOverTrials) {
+  constexpr int kTrials = 60;
+  const SyntheticCase truth = BrushedMetal();
+  std::vector<double> sum_z2(truth.values.size(), 0.0);
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Measurement measurement = Synthetic(truth, StandardLayout(), 0.05, 100 + static_cast<std::uint64_t>(trial));
+    const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+    for (std::size_t i = 0; i < truth.values.size(); ++i) {
+      const double z =
+          (material.parameters[i].values[0] - truth.values[i][0]) / material.parameters[i].standard_error[0];
+      sum_z2[i] += z * z;
+    }
+  }
+  for (std::size_t i = 0; i < truth.values.size(); ++i) {
+    const double ratio = sum_z2[i] / kTrials;
+    // Four standard deviations of chi-square over 60 trials: 4 sqrt(2 / 60) = 0.73.
+    EXPECT_NEAR(ratio, 1.0, 0.73) << i;
+    EXPECT_GT(ratio, 0.5) << i;
+  }
+}
+
+TEST(Fit, SameBitsOnOneAndEightThreads) {
+  Material materials[2];
+  for (int k = 0; k < 2; ++k) {
+    Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0.05, 9);
+    FitOptions options;
+    options.threads = k == 0 ? 1 : 8;
+    options.subsample = 500;  // so that both stages run
+    materials[k] = Fit(AutomaticRecipe(TraitsOf(measurement)), options, &measurement);
+  }
+  EXPECT_EQ(materials[0].cost, materials[1].cost);
+  EXPECT_EQ(materials[0].covariance, materials[1].covariance);
+  for (std::size_t i = 0; i < materials[0].parameters.size(); ++i) {
+    EXPECT_EQ(materials[0].parameters[i].values, materials[1].parameters[i].values);
+  }
+}
+
+TEST(Fit, SaysThatTheAxesOfAnIsotropicMaterialHaveNoDirection) {
+  Measurement measurement = Synthetic(OneLobe(Ndf::kGgx, 0.2, 0.2, 0, 0, 0), StandardLayout(), 0.05, 4);
+  const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+  ASSERT_EQ(material.degenerate.size(), 1U);
+  EXPECT_NE(material.degenerate[0].find("theta_z: alpha_x and alpha_y agree within"), std::string::npos)
+      << material.degenerate[0];
+  EXPECT_TRUE(std::isnan(material.parameters[4].standard_error[0]));
+  EXPECT_TRUE(material.termination.determined);
+}
+
+TEST(Fit, SaysWhatTheDataDoNotDetermine) {
+  // One direction of the half vector only: alpha and f0 cannot be told apart.
+  Samples samples;
+  samples.values.resize(1);
+  for (int k = 0; k < 20; ++k) {
+    const double value = 0.5 + 0.001 * k;
+    samples.Append(FromSpherical(0.1, 0.2), FromSpherical(0.1, 0.2 + kPi), &value, static_cast<std::uint32_t>(k));
+  }
+  Measurement measurement;
+  measurement.samples = samples;
+  measurement.channels.names = {"Y"};
+  measurement.source = "one direction";
+  Recipe recipe =
+      DefaultRecipe({{Lobe{Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kSchlick}}, Diffuse::kLambert}, "ggx");
+  const Material material = Fit(recipe, {}, &measurement);
+  EXPECT_FALSE(material.termination.determined);
+  EXPECT_FALSE(material.degenerate.empty());
+}
+
+TEST(Fit, SetsAsideAndCounts) {
+  Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0, 1);
+  const std::size_t before = measurement.samples.size();
+  measurement.samples.values[1][3] = -20;
+  Recipe recipe = AutomaticRecipe(TraitsOf(measurement));
+  recipe.theta_max = DegreesToRadians(50);
+  const Material material = Fit(recipe, {}, &measurement);
+  EXPECT_GT(material.set_aside.at("beyond_angle_limit"), 0U);
+  EXPECT_EQ(material.set_aside.at("negative"), 1U);
+  EXPECT_EQ(material.samples_used + material.set_aside.at("beyond_angle_limit") + 1, before);
+  EXPECT_EQ(material.samples_read, before);
+}
+
+TEST(Fit, RefusesFewerSamplesThanParametersAndNothingLeft) {
+  Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0, 1);
+  Measurement few = measurement;
+  few.samples = measurement.samples.Subset({0, 1, 2});
+  EXPECT_THROW(Fit(AutomaticRecipe({}), {}, &few), InputError);
+  Recipe narrow = AutomaticRecipe({});
+  narrow.theta_max = DegreesToRadians(1);
+  EXPECT_THROW(Fit(narrow, {}, &measurement), InputError);
+  Recipe weighted = AutomaticRecipe({});
+  weighted.weighting = Weighting::kSolidAngle;
+  EXPECT_THROW(Fit(weighted, {}, &measurement), InputError);
+}
+
+TEST(Fit, InPlaneMeasurementGetsATiltInItsPlaneOnly) {
+  for (const double azimuth_deg : {0.0, 35.0}) {
+    GoniometerLayout layout = StandardLayout();
+    layout.in_plane = true;
+    layout.azimuths = {DegreesToRadians(azimuth_deg)};
+    layout.detector_step = DegreesToRadians(4);
+    const SyntheticCase truth = OneLobe(Ndf::kGgxTilted, 0.2, 0.2, 0, 2, -azimuth_deg);
+    Measurement measurement = Synthetic(truth, layout, 0, 1);
+    const MeasurementTraits traits = TraitsOf(measurement);
+    EXPECT_TRUE(traits.in_plane);
+    EXPECT_NEAR(traits.plane_azimuth, DegreesToRadians(azimuth_deg), 1e-9);
+    const Material material = Fit(AutomaticRecipe(traits), {}, &measurement);
+    EXPECT_EQ(material.model.lobes[0].ndf, Ndf::kGgxTilted);
+    ExpectRecovered(material, truth, 1e-8);
+  }
+}
+
+TEST(Fit, ReportsTheErrorUnderEveryMetric) {
+  Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0.05, 1);
+  const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+  ASSERT_EQ(material.errors.size(), MetricChoices().size());
+  for (const MetricError& error : material.errors) {
+    // 5 % noise is what is left, under the metric that measures just that.
+    if (error.metric == "relative") {
+      EXPECT_NEAR(error.rms, 0.05, 0.003);
+    }
+    if (error.metric == material.metric) {
+      const double residuals = static_cast<double>(material.samples_used * material.channels.size());
+      EXPECT_NEAR(error.rms, std::sqrt(2 * material.cost / residuals), 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lobefit

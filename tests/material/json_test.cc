@@ -1,0 +1,82 @@
+#include "lobefit/material/json.h"
+
+#include "tests/support/schema.h"
+#include "tests/support/synthetic.h"
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "lobefit/base/error.h"
+#include "lobefit/fit/fit.h"
+
+namespace lobefit {
+namespace {
+
+Material FittedMaterial() {
+  Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 1, 2, 20), StandardLayout(), 0.05, 3);
+  measurement.conventions["value-kind"] = "f (header)";
+  return Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+}
+
+TEST(MaterialJson, FollowsTheSchemaAndReadsBackAsItself) {
+  const Material material = FittedMaterial();
+  const std::string text = ToJson(material);
+  EXPECT_TRUE(FollowsSchema(text));
+  const std::string again = ToJson(MaterialFromJson(text, "m.json"));
+  EXPECT_EQ(again, text);
+}
+
+TEST(MaterialJson, HasTheContractsNamesAndDegrees) {
+  const Material material = FittedMaterial();
+  const nlohmann::json json = nlohmann::json::parse(ToJson(material));
+  for (const char* name : {"alpha_x", "alpha_y", "theta_x_deg", "theta_y_deg", "theta_z_deg", "f0", "diffuse"}) {
+    for (const char* member : {"value", "stderr", "unit", "free"})
+      EXPECT_TRUE(json["parameters"][name].contains(member)) << name << " " << member;
+  }
+  EXPECT_NEAR(json["parameters"]["theta_z_deg"]["value"].get<double>(), 20, 0.5);
+  EXPECT_EQ(json["parameters"]["theta_z_deg"]["unit"], "deg");
+  EXPECT_EQ(json["parameters"]["f0"]["value"].size(), 3U);
+  EXPECT_NEAR(json["parameters"]["theta_y_deg"]["stderr"].get<double>(),
+              RadiansToDegrees(material.parameters[3].standard_error[0]), 1e-15);
+  // The covariance is in the units of the parameters.
+  const std::size_t row = 3;
+  EXPECT_EQ(json["covariance"]["names"][row], "theta_y_deg");
+  EXPECT_NEAR(std::sqrt(json["covariance"]["matrix"][row][row].get<double>()),
+              json["parameters"]["theta_y_deg"]["stderr"].get<double>(), 1e-12);
+}
+
+TEST(MaterialJson, NotANumberBecomesNull) {
+  Material material = FittedMaterial();
+  material.parameters[0].standard_error[0] = std::nan("");
+  const std::string text = ToJson(material);
+  EXPECT_TRUE(nlohmann::json::parse(text)["parameters"]["alpha_x"]["stderr"].is_null());
+  EXPECT_TRUE(FollowsSchema(text));
+  EXPECT_TRUE(std::isnan(MaterialFromJson(text, "m.json").parameters[0].standard_error[0]));
+}
+
+TEST(MaterialJson, RefusesWhatIsNotAMaterial) {
+  const std::string good = ToJson(FittedMaterial());
+  const auto without = [&](const char* member) {
+    nlohmann::json json = nlohmann::json::parse(good);
+    json.erase(member);
+    return json.dump();
+  };
+  const auto with_value = [&](const nlohmann::json::json_pointer& where, const nlohmann::json& value) {
+    nlohmann::json json = nlohmann::json::parse(good);
+    json[where] = value;
+    return json.dump();
+  };
+  using Pointer = nlohmann::json::json_pointer;
+  for (const std::string& bad :
+       {std::string(), std::string("{"), std::string("[]"), std::string("{\"format\": \"other\"}"),
+        good.substr(0, good.size() / 2), without("model"), without("parameters"), without("channels"),
+        with_value(Pointer("/format_version"), "2.0"), with_value(Pointer("/model/lobes/0/ndf"), "phong"),
+        with_value(Pointer("/parameters/alpha_x/value"), "0.3"),
+        with_value(Pointer("/parameters/f0/value"), {0.1, 0.2}),
+        with_value(Pointer("/parameters/alpha_x/value"), nullptr),
+        with_value(Pointer("/channels"), nlohmann::json::array())}) {
+    EXPECT_THROW(MaterialFromJson(bad, "m.json"), InputError) << bad.substr(0, 60);
+  }
+}
+
+}  // namespace
+}  // namespace lobefit

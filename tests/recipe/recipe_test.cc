@@ -1,0 +1,118 @@
+#include "lobefit/recipe/recipe.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/math/vec.h"
+
+namespace lobefit {
+namespace {
+
+constexpr char kGood[] = R"(name = "mine"
+metric = "relative"
+weighting = "solid-angle"
+theta_max_deg = 70
+diffuse = "none"
+loss = { kind = "cauchy", scale = 0.2 }
+
+[[lobe]]
+ndf = "ellipsoid"
+masking = "smith-height"
+fresnel = "none"
+
+[parameters]
+alpha_x = { start = 0.2, bounds = [0.01, 0.5] }
+theta_x_deg = { fixed = 2 }
+scale = { start = [0.1, 0.2, 0.3] }
+)";
+
+TEST(Recipe, ReadsEveryKey) {
+  const Recipe recipe = ParseRecipe(kGood, "r.toml");
+  EXPECT_EQ(recipe.name, "mine");
+  EXPECT_EQ(recipe.metric, Metric::kRelative);
+  EXPECT_EQ(recipe.weighting, Weighting::kSolidAngle);
+  EXPECT_EQ(recipe.loss, Loss::kCauchy);
+  EXPECT_DOUBLE_EQ(recipe.loss_scale, 0.2);
+  EXPECT_DOUBLE_EQ(recipe.theta_max, DegreesToRadians(70));
+  EXPECT_EQ(recipe.model.diffuse, Diffuse::kNone);
+  ASSERT_EQ(recipe.model.lobes.size(), 1U);
+  EXPECT_EQ(recipe.model.lobes[0].masking, Masking::kSmithHeight);
+  EXPECT_THAT(recipe.parameters[0].start, testing::ElementsAre(0.2));
+  EXPECT_EQ(recipe.parameters[0].high, 0.5);
+  EXPECT_THAT(recipe.parameters[2].fixed, testing::ElementsAre(testing::DoubleNear(DegreesToRadians(2), 1e-16)));
+  EXPECT_FALSE(recipe.IsFree(2));
+  EXPECT_TRUE(recipe.IsFree(1));
+  EXPECT_THAT(recipe.parameters[5].start, testing::ElementsAre(0.1, 0.2, 0.3));
+}
+
+TEST(Recipe, TomlRoundTrip) {
+  const std::string once = ToToml(ParseRecipe(kGood, "r.toml"));
+  EXPECT_EQ(ToToml(ParseRecipe(once, "r.toml")), once);
+}
+
+TEST(Recipe, RecipesOfTheLibraryAreValid) {
+  int read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(LOBEFIT_SOURCE_DIR) + "/fits")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Recipe recipe = ReadRecipe(entry.path());
+    EXPECT_EQ(recipe.name, entry.path().stem().string());
+    ++read;
+  }
+  EXPECT_GE(read, 3);
+}
+
+struct BadCase {
+  const char* toml;
+  const char* message;
+};
+
+class BadRecipe : public testing::TestWithParam<BadCase> {};
+
+TEST_P(BadRecipe, IsRefusedWithFileLineAndWhatIsAllowed) {
+  try {
+    ParseRecipe(GetParam().toml, "r.toml");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), GetParam().message);
+    EXPECT_EQ(error.exit_code(), 3);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadRecipe,
+    testing::Values(
+        BadCase{"[[lobe]]\nnfd = \"ggx\"\n",
+                "r.toml:2: unknown key 'nfd' of a lobe (did you mean 'ndf'?); allowed: ndf, masking, fresnel"},
+        BadCase{"[[lobe]]\nndf = \"ggxx\"\n",
+                "r.toml:2: ndf = 'ggxx' is unknown (did you mean 'ggx'?); allowed: ggx, ggx-tilted, ggx-anisotropic, "
+                "ellipsoid"},
+        BadCase{"metric = 3\n[[lobe]]\n",
+                "r.toml:1: metric = '?' is unknown; allowed: log, cube-root, relative, cosine-l2, ngan, low-log"},
+        BadCase{"[[lobe]]\n[parameters]\nalpha = { start = 1 }\n",
+                "r.toml:3: unknown key 'alpha' of this model's parameters (did you mean 'alpha_x'?); allowed: alpha_x, "
+                "alpha_y, "
+                "theta_x_deg, theta_y_deg, theta_z_deg, f0, diffuse"},
+        BadCase{"[[lobe]]\n[parameters]\nalpha_x = { start = 0.9, bounds = [0.1, 0.5] }\n",
+                "r.toml:3: 'alpha_x' = 0.9 lies outside its bounds [0.1, 0.5]"},
+        BadCase{"[[lobe]]\n[parameters]\nalpha_x = { bounds = [0.5, 0.1] }\n",
+                "r.toml:3: bounds of 'alpha_x': the first must be below the second"},
+        BadCase{"[[lobe]]\n[parameters]\nalpha_x = { fixed = nan }\n", "r.toml:3: 'fixed' must be a finite number"},
+        BadCase{"[[lobe]]\nndf = \"ggx\"\n[parameters]\nalpha_y = { start = 0.1 }\n",
+                "r.toml:4: 'alpha_y' is not a free parameter of this ndf; it can only be fixed"},
+        BadCase{"theta_max_deg = 95\n[[lobe]]\n", "r.toml:1: theta_max_deg must lie in (0, 90]"},
+        BadCase{"name = \"x\"\n", "r.toml:1: a recipe needs at least one [[lobe]]"}));
+
+TEST(AutomaticRecipe, TakesWhatTheMeasurementDetermines) {
+  EXPECT_EQ(AutomaticRecipe({.isotropic = true}).model.lobes[0].ndf, Ndf::kGgx);
+  const Recipe in_plane = AutomaticRecipe({.in_plane = true, .plane_azimuth = 0.5});
+  EXPECT_EQ(in_plane.model.lobes[0].ndf, Ndf::kGgxTilted);
+  EXPECT_EQ(in_plane.plane_azimuth, 0.5);
+  EXPECT_EQ(AutomaticRecipe({}).model.lobes[0].ndf, Ndf::kEllipsoid);
+  EXPECT_FALSE(AutomaticRecipe({}).reason.empty());
+}
+
+}  // namespace
+}  // namespace lobefit
