@@ -5,9 +5,12 @@ namespace lobefit {
 const std::vector<Format>& Formats() {
   static const std::vector<Format> formats = {
       {"rgl", "RGL/EPFL .bsdf tensor file", IsRgl, ReadRgl},
+      {"exr", "OpenEXR slice, hemisphere or UTIA image", IsExr, ReadExr},
       {"merl", "MERL .binary table", IsMerl, ReadMerl},
       {"mbsdf", "MDL .mbsdf isotropic table", IsMbsdf, ReadMbsdf},
       {"bsdf-xml", "Radiance/WINDOW BSDF-XML: angle-basis matrix or tensor tree", IsBsdfXml, ReadBsdfXml},
+      {"utia", "UTIA .bin table", IsUtia, ReadUtia},
+      {"mit", "MIT/Ngan anisotropic .dat table", IsMit, ReadMit},
       {"zemax", "Zemax BSDF Data Interchange text", IsZemax, ReadZemax},
       {"lighttools", "LightTools .bsdf text", IsLightTools, ReadLightTools},
       {"fred", "FRED tabular scatter text", IsFred, ReadFred},

@@ -13,6 +13,12 @@ const std::vector<Format>& Formats();
 // Each reader is in the source file of its name.
 bool IsMerl(std::string_view bytes);
 Measurement ReadMerl(const InputFile& file, const ReadOptions& options);
+bool IsExr(std::string_view bytes);
+Measurement ReadExr(const InputFile& file, const ReadOptions& options);
+bool IsMit(std::string_view bytes);
+Measurement ReadMit(const InputFile& file, const ReadOptions& options);
+bool IsUtia(std::string_view bytes);
+Measurement ReadUtia(const InputFile& file, const ReadOptions& options);
 bool IsRgl(std::string_view bytes);
 Measurement ReadRgl(const InputFile& file, const ReadOptions& options);
 bool IsBsdfXml(std::string_view bytes);

@@ -27,13 +27,25 @@ enum class XmlNaming { kWindow, kPlain };
 enum class IntervalKind { kBounds, kOffsets };
 // pab Mountain: azimuths as in the file, or turned so that the "up" direction of the header is +y, as Radiance does.
 enum class MountainAzimuth { kFile, kUp };
+// Numbers of UTIA files: f_r as they are, or f_r / 100 behind an sRGB curve (what some readers take them for).
+enum class UtiaEncoding { kRaw, kSrgb };
+// What the pixels of an EXR image are. kSlice: theta_h to the right, theta_d, both over 90 degrees, phi_d fixed;
+// kSliceSqrt: the same with theta_h = (linear axis)^2 / (pi/2); kHemisphere: the viewers of one incident direction;
+// kUtia: row = 48 i + j for the light at 15 i, 7.5 j degrees, columns likewise for the viewer.
+enum class ExrAxes { kSlice, kSliceSqrt, kHemisphere, kUtia };
+// Of a hemisphere on the image's square: radius theta / 90 degrees; sqrt(2) sin(theta / 2); or the whole square by the
+// concentric map of the projected direction.
+enum class ExrProjection { kEquidistant, kEqualArea, kConcentric };
+// Whether theta_d of a slice grows upwards (as in image slices of BRDF Explorer) or downwards (as ALTA writes them).
+enum class ExrRows { kUp, kDown };
 
 // What files do not say and formats disagree on. Unset: the format's documented default, or what the file's header
 // says. Every choice that a reader makes is echoed in Measurement::conventions under the option's name on the command
 // line.
 struct ReadOptions {
   std::optional<AngleUnit> angle_unit;  // --angle-unit deg|rad          (csv, astm)
-  std::optional<ValueKind> value_kind;  // --value-kind f|f-cos-o|f-cos-i|pi-f|intensity|pi-f-cos-o (csv, alta, astm)
+  std::optional<ValueKind>
+      value_kind;  // --value-kind f|f-cos-o|f-cos-i|pi-f|intensity|pi-f-cos-o (csv, alta, astm, exr)
   std::optional<IncidentSense> incident_sense;  // --incident towards|propagation (csv, astm, fred)
   std::optional<std::string> value_column;      // --value-column NAME            (csv with several candidate columns)
   CellPosition merl_cell = CellPosition::kCentre;  // --merl-cell centre|edge      (merl)
@@ -53,6 +65,19 @@ struct ReadOptions {
   // --alta-interval bounds|offsets (alta). Unset: bounds where every value lies between its two columns, else offsets.
   std::optional<IntervalKind> alta_interval;
   MountainAzimuth mountain_azimuth = MountainAzimuth::kFile;  // --mountain-azimuth file|up (mountain)
+  CellPosition mit_cell = CellPosition::kCentre;              // --mit-cell centre|edge     (mit)
+  std::optional<double> mit_scale;                            // --mit-scale FACTOR         (mit). Unset: 10
+  std::optional<int> mit_stride;  // --mit-stride N: every N-th azimuth (mit). Unset: what keeps 4 million cells at most
+  UtiaEncoding utia_encoding = UtiaEncoding::kRaw;  // --utia-encoding raw|srgb   (utia)
+  std::optional<double> utia_scale;                 // --utia-scale FACTOR        (utia). Unset: 1
+  // EXR images. Unset: the file's attributes brdf.axes, brdf.projection, brdf.rows, brdf.phi_d, brdf.theta_i,
+  // brdf.phi_i, brdf.value.
+  std::optional<ExrAxes> exr_axes;              // --exr-axes slice|slice-sqrt|hemisphere|utia
+  std::optional<ExrProjection> exr_projection;  // --exr-projection equidistant|equal-area|concentric
+  std::optional<ExrRows> exr_rows;              // --exr-rows up|down
+  std::optional<double> exr_phi_d_deg;          // --exr-phi-d DEGREES. Unset and not in the file: 90
+  std::optional<double> exr_theta_i_deg;        // --exr-theta-i DEGREES
+  std::optional<double> exr_phi_i_deg;          // --exr-phi-i DEGREES
 };
 
 // An input file as the readers see it: its name for messages and its bytes.
