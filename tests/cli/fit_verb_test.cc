@@ -1,0 +1,79 @@
+#include "tests/support/run_program.h"
+#include "tests/support/schema.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace lobefit {
+namespace {
+
+using FitVerb = ProgramTest;
+
+TEST_F(FitVerb, WritesADocumentAndAPicture) {
+  const ProgramResult result = Shell("lobefit fit $SOURCE/samples/brushed_metal.csv");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(Files(), testing::ElementsAre("brushed_metal.material.json", "brushed_metal.report.png"));
+  EXPECT_THAT(result.out, testing::HasSubstr("theta_z_deg"));
+  EXPECT_THAT(result.out, testing::HasSubstr("because the samples leave the plane of incidence"));
+  EXPECT_TRUE(FollowsSchema(ReadWholeFile(folder_ / "brushed_metal.material.json")));
+  EXPECT_EQ(ReadWholeFile(folder_ / "brushed_metal.report.png").substr(0, 8), "\x89PNG\r\n\x1a\n");
+}
+
+TEST_F(FitVerb, PrintsTheSameDocumentAsJson) {
+  const ProgramResult result =
+      Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --json --no-report --name x --out sub/folder");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, ReadWholeFile(folder_ / "sub/folder/x.material.json"));
+  EXPECT_TRUE(FollowsSchema(result.out));
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_THAT(json["command"].get<std::string>(), testing::HasSubstr("satin_plastic.csv --json"));
+  EXPECT_EQ(json["source"]["sha256"].get<std::string>().size(), 64U);
+  for (const char* timing : {"read", "fit", "report"}) EXPECT_TRUE(json["timings_s"].contains(timing));
+}
+
+TEST_F(FitVerb, RecoversTheTruthOfItsSample) {
+  // The truth of samples/brushed_metal.csv is in samples/brushed_metal.toml.
+  const ProgramResult result = Shell("lobefit fit $SOURCE/samples/brushed_metal.csv --json --no-report");
+  const nlohmann::json p = nlohmann::json::parse(result.out)["parameters"];
+  const std::pair<const char*, double> truth[] = {
+      {"alpha_x", 0.35}, {"alpha_y", 0.11}, {"theta_x_deg", 0}, {"theta_y_deg", 3}, {"theta_z_deg", 25}};
+  for (const auto& [name, value] : truth) {
+    EXPECT_LT(std::fabs(p[name]["value"].get<double>() - value), 3 * p[name]["stderr"].get<double>()) << name;
+  }
+}
+
+TEST_F(FitVerb, TakesARecipeByNameOrFileAndAPartOfTheFile) {
+  WriteWholeFile(folder_ / "mine.toml", "metric = \"cube-root\"\n[[lobe]]\nndf = \"ggx\"\n");
+  const ProgramResult by_file =
+      Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe mine.toml --theta-i 30:60 --json --no-report");
+  ASSERT_EQ(by_file.exit_code, 0) << by_file.err;
+  const nlohmann::json json = nlohmann::json::parse(by_file.out);
+  EXPECT_EQ(json["recipe"]["metric"], "cube-root");
+  EXPECT_GT(json["quality"]["set_aside"]["outside_selection"].get<int>(), 0);
+  const ProgramResult by_name = Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ggx --json --no-report");
+  EXPECT_NEAR(nlohmann::json::parse(by_name.out)["parameters"]["alpha_x"]["value"].get<double>(), 0.18, 0.005);
+}
+
+TEST_F(FitVerb, ExitsWith4WhereTheFitIsNotDetermined) {
+  // A mirror pair of directions, measured again and again a little aside: f0, alpha and diffuse cannot be told apart.
+  std::string csv = "theta_i,phi_i,theta_o,phi_o,value\n";
+  for (int i = 0; i < 12; ++i) csv += "20,0," + std::to_string(20 + 1e-7 * i) + ",180,0.5\n";
+  WriteWholeFile(folder_ / "one.csv", csv);
+  const ProgramResult result = Shell("lobefit fit one.csv --recipe ggx --no-report");
+  EXPECT_EQ(result.exit_code, 4) << result.out << result.err;
+  EXPECT_THAT(result.err, testing::HasSubstr("does not determine every parameter"));
+  const std::string document = ReadWholeFile(folder_ / "one.material.json");
+  EXPECT_TRUE(FollowsSchema(document));
+  EXPECT_FALSE(nlohmann::json::parse(document)["termination"]["determined"].get<bool>());
+  EXPECT_FALSE(nlohmann::json::parse(document)["degenerate"].empty());
+}
+
+TEST_F(FitVerb, DrawsTheReportAgain) {
+  ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --no-report").exit_code, 0);
+  const ProgramResult result = Shell("lobefit report satin_plastic.material.json $SOURCE/samples/satin_plastic.csv");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(Files(), testing::Contains("satin_plastic.report.png"));
+}
+
+}  // namespace
+}  // namespace lobefit
