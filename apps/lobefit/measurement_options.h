@@ -1,8 +1,8 @@
 // The options by which a verb reads a measurement: what a file leaves open, and which part of it is used.
 #pragma once
 
-#include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -19,12 +19,8 @@ class MeasurementOptions {
   Measurement Load(const std::string& path) const;
 
  private:
-  ReadOptions Options() const;
-
-  std::string angle_unit_, value_kind_, incident_, value_column_, merl_cell_, side_, xml_naming_, xml_wavelength_,
-      alta_interval_, mountain_azimuth_, theta_i_, phi_i_;
-  int zemax_rotation_sign_ = 1;
-  double lighttools_azimuth_ = 90;
+  std::string theta_i_, phi_i_;
+  std::vector<std::string> words_;  // of the options of ReadOptionTable(), in its order; empty: not given
 };
 
 }  // namespace lobefit
