@@ -41,7 +41,7 @@ TEST_F(BadInput, EveryMistakeHasItsExitCodeAndOneMessage) {
       {"lobefit fit $SOURCE/samples/satin_plastic.csv --theta-i 40:30", 2, "the first bound is above the second"},
       {"lobefit fit $SOURCE/samples/satin_plastic.csv --theta-i x", 2, "is not a number"},
       {"lobefit fit $SOURCE/samples/satin_plastic.csv --theta-i 1:2", 3, "none of its"},
-      {"lobefit fit $SOURCE/samples/satin_plastic.csv --value-kind candela", 2, "--value-kind 'candela' is unknown"},
+      {"lobefit fit $SOURCE/samples/satin_plastic.csv --value-kind candela", 2, "--value-kind candela: allowed are f, "},
       {"lobefit fit $SOURCE/samples/satin_plastic.csv --weighting solid-angle", 3, "lists directions without cells"},
       {"lobefit fit $SOURCE/samples/satin_plastic.csv --out empty.csv/x", 3, "empty.csv/x"},
       {"lobefit report not.material.json $SOURCE/samples/satin_plastic.csv", 3,
