@@ -86,6 +86,23 @@ double EllipsoidFrame::Sigma(const Vec3& u, double* gradient, Vec3* dsigma_du) c
   return value;
 }
 
+// sigma - u_z = (sigma - c) + (c - u_z), c = d / nn: the first is cc / (2 nn (s + d)), the second (A n . A (u - u_z n))
+// / nn.
+double EllipsoidFrame::Lambda(const Vec3& u, double* gradient) const {
+  const double sigma = Sigma(u, gradient);
+  if (gradient != nullptr) {
+    for (int k = 0; k < kEllipsoidParameters; ++k) gradient[k] /= u.z;
+  }
+  const Vec3& n = turn_axis_[2];
+  const FormWeights shape = ShapeWeights(alpha_x_, alpha_y_);
+  const double d = Form(shape, rotation_ * u, n);
+  if (d < 0) return sigma / u.z - 1.0;
+  const Vec3 e = rotation_ * Vec3{u.y, -u.x, 0.0};
+  const double cc = Form(CofactorWeights(alpha_x_, alpha_y_), e, e);
+  const double level = FormOfPerpendicular(shape, rotation_ * Vec3{u.x, u.y, 0.0}, n);
+  return (0.5 * cc / (std::sqrt(d * d + cc) + d) + level) / (norm2_an_ * u.z);
+}
+
 double EllipsoidD(const Ellipsoid& ellipsoid, const Vec3& wm, double* gradient, Vec3* dD_dwm) {
   return EllipsoidFrame(ellipsoid).D(wm, gradient, dD_dwm);
 }

@@ -59,6 +59,9 @@ class EllipsoidFrame {
   explicit EllipsoidFrame(const Ellipsoid& ellipsoid);
   double D(const Vec3& wm, double* gradient = nullptr, Vec3* dD_dwm = nullptr) const;
   double Sigma(const Vec3& u, double* gradient = nullptr, Vec3* dsigma_du = nullptr) const;
+  // sigma(u) / u.z - 1 for u.z > 0 [Heitz' Lambda in the convention of Walter eq 6], without the subtraction: small
+  // near the normal, and of the right sign there. Negative where the masking is clamped.
+  double Lambda(const Vec3& u, double* gradient = nullptr) const;
   const Mat3& rotation() const { return rotation_; }
   // |A n|^2 = M33 and its gradient.
   double norm2_an() const { return norm2_an_; }

@@ -117,6 +117,19 @@ double SmithSigma(const SlopeDistribution& distribution, const Vec3& u, double* 
   return sigma.value;
 }
 
+double CosineLambda(const SlopeDistribution& distribution, const Vec3& u, double* gradient) {
+  const double sigma = SmithSigma(distribution, u, gradient);
+  if (gradient != nullptr) {
+    for (int k = 0; k < kSlopeParameters; ++k) gradient[k] /= u.z;
+  }
+  const ProjectedSlopes p = ProjectSlopes(distribution, u);
+  if (!(p.c > 0)) return sigma / u.z - 1.0;
+  // sigma - c, then c - u_z.
+  const double rough = distribution.kind == SlopeKind::kGgx ? 0.5 * p.q / (p.c + std::sqrt(p.c * p.c + p.q))
+                                                            : p.c * SmithLambdaOfA(distribution.kind, p.a);
+  return (rough - (distribution.slope_x * u.x + distribution.slope_y * u.y)) / u.z;
+}
+
 double SmithG1(const SlopeDistribution& distribution, const Vec3& u, double* gradient) {
   const double value = 1.0 / (1.0 + SmithLambda(distribution, u, gradient));
   if (gradient != nullptr) {

@@ -32,6 +32,10 @@ double SmithLambda(const SlopeDistribution& distribution, const Vec3& u, double*
 double SmithSigma(const SlopeDistribution& distribution, const Vec3& u, double* gradient = nullptr,
                   Vec3* dsigma_du = nullptr);
 
+// sigma / u_z - 1 for u_z > 0: Lambda in the convention of BRDFs that divide by the cosines; equal to SmithLambda for a
+// zero mean slope, negative where the masking is clamped. No cancellation near the normal.
+double CosineLambda(const SlopeDistribution& distribution, const Vec3& u, double* gradient = nullptr);
+
 // c / sigma = 1 / (1 + Lambda); domain c > 0.
 double SmithG1(const SlopeDistribution& distribution, const Vec3& u, double* gradient = nullptr);
 
