@@ -25,6 +25,7 @@ constexpr Verb kVerbs[] = {
     {"fit", "fit a reflectance model to a measurement file", SetUpFit},
     {"report", "draw the report of a fitted material against its measurement again", SetUpReport},
     {"synth", "make a synthetic measurement file from a material or recipe", SetUpSynth},
+    {"eval", "evaluate a quantity of the papers, with gradient, for rows of CSV", SetUpEval},
 };
 
 std::string CommandLine(int argc, char** argv) {

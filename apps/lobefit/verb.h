@@ -20,6 +20,7 @@ struct CommonOptions {
 // Adds options to `app` and returns what runs the verb; the result is the exit code.
 using VerbSetup = std::function<int()> (*)(CLI::App* app, CommonOptions* common);
 
+std::function<int()> SetUpEval(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common);

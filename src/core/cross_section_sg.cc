@@ -222,7 +222,9 @@ double SgCrossSectionEq40(double alpha, double u, double* dsigma_dalpha, double*
     *dsigma_dalpha += 0.5 * (u * slope - std::fabs(u) * h_slope) * sharpness.dk_dalpha;
   }
   if (dsigma_du != nullptr) *dsigma_du += 0.5 * (langevin - 1 - (u < 0 ? -h : h));
-  return beckmann + 0.5 * (u * (langevin - 1) - std::fabs(u) * h);
+  // Behind, 1 - L - h = 2 (1/k - 1/(e^k - 1)) / (e^k + 1), which like Beckmann's tail keeps its relative accuracy.
+  if (u < 0) return beckmann - u * (1 / k - 1 / std::expm1(k)) / (std::exp(k) + 1);
+  return beckmann + 0.5 * u * (langevin - 1 - h);
 }
 
 double SgCrossSectionEq41(double alpha, double u, double* dsigma_dalpha, double* dsigma_du) {

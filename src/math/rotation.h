@@ -13,4 +13,9 @@ Mat3 RotationMatrix(const Vec3& r);
 // scalar f(v) df/dr = J^T (v x df/dv).
 Mat3 RotationLeftJacobian(const Vec3& r);
 
+// exp([r]) w / |w| with every component to an ulp, also a small one whose terms cancel (a direction near the axis of a
+// narrow lobe); in doubled precision for |r| <= 8 and slow, as RotationMatrix beyond. For comparisons with tables, not
+// for inner loops. Domain: w != 0, |w| neither subnormal nor near overflow.
+Vec3 RotatedDirectionToTheUlp(const Vec3& r, const Vec3& w);
+
 }  // namespace lobefit

@@ -1,8 +1,10 @@
-// A table of reference values: CSV with a header, kept in tests/data/reference. Numbers are parsed as doubles (inputs
-// are exact doubles, shortest form), text columns (kind) are kept.
+// A table of reference values: CSV with a header, kept in tests/data/reference, or in the folder that the environment
+// variable LOBEFIT_REFERENCE_TABLES names (tables of the same kind made with another seed). Numbers are parsed as
+// doubles (inputs are exact doubles, shortest form), text columns (kind) are kept.
 #pragma once
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -19,7 +21,9 @@ namespace lobefit {
 class ReferenceTable {
  public:
   explicit ReferenceTable(const std::string& name) {
-    std::ifstream in(std::string(LOBEFIT_SOURCE_DIR) + "/tests/data/reference/" + name + ".csv");
+    const char* other = std::getenv("LOBEFIT_REFERENCE_TABLES");
+    const std::string folder = other != nullptr ? other : LOBEFIT_SOURCE_DIR "/tests/data/reference";
+    std::ifstream in(folder + "/" + name + ".csv");
     EXPECT_TRUE(in.good()) << name;
     std::stringstream text;
     text << in.rdbuf();
@@ -39,6 +43,7 @@ class ReferenceTable {
   }
 
   std::size_t size() const { return rows_.size(); }
+  const std::vector<std::string>& columns() const { return columns_; }
   bool Has(const std::string& column) const { return Find(column) < columns_.size(); }
   const std::string& Text(std::size_t row, const std::string& column) const { return rows_[row].at(Find(column)); }
   double operator()(std::size_t row, const std::string& column) const {
