@@ -45,7 +45,7 @@ enum class Weight { kRegular, kBold, kOblique, kMono };
 
 struct TextStyle {
   double size = 12;
-  Rgb color;
+  Rgb color = {};
   Weight weight = Weight::kRegular;
   Align align = Align::kLeft;
   Baseline baseline = Baseline::kBottom;

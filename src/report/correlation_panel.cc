@@ -14,7 +14,8 @@ namespace {
 
 struct Correlation {
   std::vector<std::string> labels;
-  std::vector<double> values;  // row-major; NaN where a variance is not known
+  std::vector<std::string> groups;  // the labels without channels
+  std::vector<double> values;       // row-major; NaN where a variance is not known
   double At(std::size_t i, std::size_t j) const { return values[i * labels.size() + j]; }
 };
 
@@ -33,31 +34,40 @@ std::string Label(const std::string& name, const std::vector<Parameter>& paramet
   return label;
 }
 
+std::vector<std::string> RunLabels(const std::vector<std::string>& groups) {
+  std::vector<std::string> labels(groups.size());
+  for (std::size_t begin = 0, end = 0; begin < groups.size(); begin = end) {
+    while (end < groups.size() && groups[end] == groups[begin]) ++end;
+    labels[(begin + end - 1) / 2] = groups[begin];
+  }
+  return labels;
+}
+
 void Draw(const Correlation& correlation, Canvas* canvas, const Box& content) {
   const std::size_t n = correlation.labels.size();
-  const bool labelled = n <= 20;
+  // Too many for a label each: one in the middle of every run of channels.
+  const std::vector<std::string> labels = n <= 20 ? correlation.labels : RunLabels(correlation.groups);
   const TextStyle label = {
       .size = n > 14 ? 9.0 : style::kNoteSize, .color = style::kInk, .baseline = Baseline::kMiddle, .markup = true};
   double room = 8;
-  for (const std::string& text : correlation.labels) room = std::max(room, canvas->TextWidth(text, label) + 8);
-  if (!labelled) room = 8;
+  for (const std::string& text : labels) room = std::max(room, canvas->TextWidth(text, label) + 8);
   const double size = std::min(content.width - room, content.height - room - 44), cell = size / static_cast<double>(n);
   const double left = content.x + room, top = content.y + room;
   for (std::size_t i = 0; i < n; ++i) {
     const double y = top + (static_cast<double>(i) + 0.5) * cell;
-    if (labelled) {
+    if (!labels[i].empty()) {
       TextStyle row = label, column = label;
       row.align = Align::kRight;
       column.upwards = true;
-      canvas->Text({left - 5, y}, correlation.labels[i], row);
-      canvas->Text({left + (static_cast<double>(i) + 0.5) * cell, top - 5}, correlation.labels[i], column);
+      canvas->Text({left - 5, y}, labels[i], row);
+      canvas->Text({left + (static_cast<double>(i) + 0.5) * cell, top - 5}, labels[i], column);
     }
     for (std::size_t j = 0; j < n; ++j) {
       const double r = correlation.At(i, j);
       const Box box = {left + static_cast<double>(j) * cell, top + static_cast<double>(i) * cell, cell, cell};
-      canvas->Fill(Inset(box, 0.5, 0.5, 0.5, 0.5), i == j          ? style::kGrid
-                                                   : std::isnan(r) ? style::kShade
-                                                                   : DivergingColor(0.5 + r / 2));
+      canvas->Fill(n <= 20 ? Inset(box, 0.5, 0.5, 0.5, 0.5) : box, i == j          ? style::kGrid
+                                                                   : std::isnan(r) ? style::kShade
+                                                                                   : DivergingColor(0.5 + r / 2));
       if (cell < 25 || i == j || std::isnan(r)) continue;
       const std::string digits = std::to_string(static_cast<int>(std::min(99.0, std::round(std::fabs(r) * 100))) + 100);
       const std::string text = Join({r < 0 ? "−." : ".", digits.substr(1)}, "");
@@ -83,7 +93,9 @@ std::optional<Panel> CorrelationPanel(const ReportData& data) {
   const std::vector<Parameter> parameters = Parameters(material.model);
   bool any = false;
   for (std::size_t i = 0; i < n; ++i) {
-    correlation->labels.push_back(Label(material.covariance_names[i], parameters));
+    const std::string& name = material.covariance_names[i];
+    correlation->labels.push_back(Label(name, parameters));
+    correlation->groups.push_back(Label(name.substr(0, name.find('[')), parameters));
     for (std::size_t j = 0; j < n; ++j) {
       const double r =
           material.covariance[i * n + j] / std::sqrt(material.covariance[i * n + i] * material.covariance[j * n + j]);

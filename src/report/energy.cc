@@ -10,7 +10,7 @@
 namespace lobefit {
 namespace {
 
-constexpr int kSteps = 64;
+constexpr int kRings = 160, kSteps = 64;
 constexpr std::size_t kValuesOfALobe = 6;
 
 SlopeCoordinates ShapeOf(const ParameterValues& values, std::size_t lobe) {
@@ -29,8 +29,8 @@ struct Moments {
 Moments Integrate(const SlopeCoordinates& shape, Masking masking, const Vec3& wi) {
   const SlopeFrame frame(shape);
   Moments moments;
-  for (int i = 0; i < kSteps; ++i) {
-    const double u = (i + 0.5) / kSteps, rho = std::sqrt(u / (1 - u));
+  for (int i = 0; i < kRings; ++i) {
+    const double u = (i + 0.5) / kRings, rho = std::sqrt(u / (1 - u));
     for (int k = 0; k < kSteps; ++k) {
       // Every ring is turned against the one before, so that rings do not line up.
       const double t = 2 * kPi * (k + 0.5 + 0.618034 * i) / kSteps;
@@ -49,8 +49,8 @@ Moments Integrate(const SlopeCoordinates& shape, Masking masking, const Vec3& wi
       moments.schlick += share * s2 * s2 * s;
     }
   }
-  moments.all /= kSteps * kSteps;
-  moments.schlick /= kSteps * kSteps;
+  moments.all /= kRings * kSteps;
+  moments.schlick /= kRings * kSteps;
   return moments;
 }
 

@@ -9,7 +9,7 @@
 namespace lobefit {
 
 // Directional albedo, integral of f_r cos(theta_o) over wo, a channel; wi away from the surface. The specular part is
-// integrated over the lobe's own slopes (points where the visible facets are), 64 x 64 points a lobe; the Lambertian
+// integrated over the lobe's own slopes (points where the visible facets are), 160 x 64 points a lobe; the Lambertian
 // part exactly.
 std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
                                       const Vec3& wi);

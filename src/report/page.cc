@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "lobefit/base/parallel.h"
 #include "lobefit/report/layout.h"
 #include "lobefit/report/style.h"
 
@@ -12,12 +13,15 @@ namespace {
 
 constexpr double kPageWidth = 1320, kMargin = 36, kGap = 28, kPanelHead = 34, kHeader = 92;
 
-void DrawLegend(Canvas* canvas, const std::vector<LegendEntry>& legend, double right, double y) {
+// From the right; what would run into the title, which ends at `left`, is left out.
+void DrawLegend(Canvas* canvas, const std::vector<LegendEntry>& legend, double left, double right, double y) {
   double x = right;
   for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
     TextStyle text = style::Note();
     text.markup = true;
-    x -= canvas->TextWidth(entry->text, text);
+    const double text_width = canvas->TextWidth(entry->text, text);
+    if (x - text_width - 24 < left) return;
+    x -= text_width;
     canvas->Text({x, y}, entry->text, text);
     const double middle = y - 4;
     switch (entry->mark) {
@@ -46,9 +50,10 @@ void DrawLegend(Canvas* canvas, const std::vector<LegendEntry>& legend, double r
 
 void DrawPanel(Canvas* canvas, const Panel& panel, const Box& box) {
   canvas->Line({box.x, box.y}, {box.right(), box.y}, {style::kInk, 1});
-  canvas->Text({box.x, box.y + 21}, panel.title,
-               {.size = style::kPanelTitleSize, .color = style::kInk, .weight = Weight::kBold, .markup = true});
-  DrawLegend(canvas, panel.legend, box.right(), box.y + 20);
+  const TextStyle title = {
+      .size = style::kPanelTitleSize, .color = style::kInk, .weight = Weight::kBold, .markup = true};
+  canvas->Text({box.x, box.y + 21}, panel.title, title);
+  DrawLegend(canvas, panel.legend, box.x + canvas->TextWidth(panel.title, title) + 16, box.right(), box.y + 20);
   panel.draw(canvas, Inset(box, 0, kPanelHead, 0, 0));
 }
 
@@ -141,9 +146,11 @@ double DrawFooter(Canvas* canvas, const ReportData& data, double y, bool draw) {
 
 Canvas DrawPage(const ReportData& data, double scale, const std::shared_ptr<Fonts>& fonts,
                 std::vector<std::string>* ids) {
+  std::vector<std::optional<Panel>> made(PanelMakers().size());
+  ParallelFor(made.size(), data.threads, [&](std::size_t k) { made[k] = PanelMakers()[k](data); });
   std::vector<Panel> panels;
-  for (const PanelMaker maker : PanelMakers()) {
-    if (std::optional<Panel> panel = maker(data)) panels.push_back(std::move(*panel));
+  for (std::optional<Panel>& panel : made) {
+    if (panel) panels.push_back(std::move(*panel));
   }
   const double width = kPageWidth - 2 * kMargin;
   Canvas ruler(1, 1, scale, fonts);

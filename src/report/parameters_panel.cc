@@ -92,7 +92,7 @@ double DrawTable(const ReportData& data, Canvas* canvas, const Box& box) {
         canvas->Text({box.x, row.y}, "Lobe " + std::to_string(lobe + 1), style::Note(style::kSecondary));
     }
     const std::size_t rows = fitted.values.size() <= kMostChannelRows ? fitted.values.size() : 1;
-    if (parameter.per_channel) row.y += 4;
+    if (parameter.per_channel) row.y += fitted.values.size() > kMostChannelRows ? 9 : 4;
     for (std::size_t i = 0; i < rows; ++i) {
       row.y += kLineHeight;
       if (canvas == nullptr) continue;

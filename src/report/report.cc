@@ -8,8 +8,8 @@
 namespace lobefit {
 
 const std::vector<PanelMaker>& PanelMakers() {
-  static const std::vector<PanelMaker> makers = {CurvesPanel,    ParametersPanel, QualityPanel, MapsPanel,
-                                                 NdfPanel,       EnergyPanel,     SpherePanel,  BurleyPanel,
+  static const std::vector<PanelMaker> makers = {CurvesPanel,    ParametersPanel, QualityPanel, SpherePanel,
+                                                 NdfPanel,       MapsPanel,       EnergyPanel,  BurleyPanel,
                                                  ResidualsPanel, CorrelationPanel};
   return makers;
 }

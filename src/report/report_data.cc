@@ -27,6 +27,13 @@ const Material& Checked(const Material& material, const Measurement& measurement
 
 constexpr std::size_t kPiece = 16384;
 
+// "550 nm", "3.5 µm".
+std::string WavelengthName(double nanometres) {
+  if (nanometres >= 1e4) return Number(nanometres / 1000, 3) + " µm";
+  const double tenths = std::round(nanometres * 10) / 10;
+  return (tenths == std::round(tenths) ? std::to_string(std::lround(tenths)) : Number(tenths, 4)) + " nm";
+}
+
 }  // namespace
 
 ReportData::ReportData(const Material& fitted_material, const Measurement& measured, int thread_count)
@@ -63,7 +70,7 @@ ReportData::ReportData(const Material& fitted_material, const Measurement& measu
   channel_colors = ChannelColors(measurement.channels.names);
   for (std::size_t c = 0; c < channels(); ++c) {
     const bool spectral = c < measurement.channels.wavelengths_nm.size();
-    channel_names.push_back(spectral ? Number(measurement.channels.wavelengths_nm[c], 4) + " nm"
+    channel_names.push_back(spectral ? WavelengthName(measurement.channels.wavelengths_nm[c])
                                      : measurement.channels.names[c]);
   }
   if (channels() <= 3) {

@@ -18,8 +18,8 @@
 namespace lobefit {
 namespace {
 
-constexpr int kLightSize = 220, kSkySize = 112;
-constexpr int kSkySamples = 48;       // half from the lobe, half by the cosine
+constexpr int kLightSize = 220, kSkySize = 104;
+constexpr int kSkySamples = 40;       // half from the lobe, half by the cosine
 constexpr double kLeastCover = 0.97;  // of the lit sphere that the samples must speak for
 
 using Color = std::array<double, 3>;
@@ -34,8 +34,13 @@ struct Frame {
 
 // World: x right, y up, z to the viewer. The tangent runs around the vertical axis.
 bool SphereFrame(int column, int row, int size, Frame* frame) {
-  const double x = (column + 0.5) / size * 2 - 1, y = 1 - (row + 0.5) / size * 2, r2 = x * x + y * y;
-  if (r2 >= 1) return false;
+  double x = (column + 0.5) / size * 2 - 1, y = 1 - (row + 0.5) / size * 2;
+  const double r = std::hypot(x, y);
+  // A rim of two pixels outside is drawn like the edge, for the interpolation when the picture is enlarged.
+  if (r >= 1 + 4.0 / size) return false;
+  const double most = 1 - 0.5 / size;
+  if (r > most) x *= most / r, y *= most / r;
+  const double r2 = x * x + y * y;
   frame->n = {x, y, std::sqrt(1 - r2)};
   const Vec3 up = {0, 1, 0};
   frame->x = Normalized(Cross(up, frame->n));

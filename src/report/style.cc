@@ -105,7 +105,7 @@ std::string RatioText(double ratio) {
 std::string Count(std::size_t value) {
   std::string digits = std::to_string(value), result;
   for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) result += " ";  // U+2009 thin space
+    if (i > 0 && (digits.size() - i) % 3 == 0) result += "\u2009";
     result += digits[i];
   }
   return result;
