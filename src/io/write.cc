@@ -1,0 +1,208 @@
+#include "lobefit/io/write.h"
+
+#include <memory>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/text.h"
+#include "lobefit/io/rgl_brdf.h"
+#include "lobefit/io/write_alta.h"
+#include "lobefit/io/write_csv.h"
+#include "lobefit/io/write_exr.h"
+#include "lobefit/io/write_merl.h"
+#include "lobefit/io/write_mountain.h"
+#include "lobefit/io/write_tensor_tree.h"
+#include "lobefit/measurement/synthesis.h"
+
+namespace lobefit {
+namespace {
+
+using Path = std::filesystem::path;
+using Paths = std::vector<Path>;
+
+// A goniometer's directions for a function without samples.
+Measurement Tabulated(const WriteSource& source) {
+  GoniometerLayout layout;
+  for (int theta = 0; theta <= 75; theta += 15) layout.polar_angles.push_back(DegreesToRadians(theta));
+  const int azimuths = source.isotropic ? 1 : 8;
+  for (int a = 0; a < azimuths; ++a) layout.azimuths.push_back(2 * kPi * a / azimuths);
+  layout.detector_step = DegreesToRadians(5);
+  return Synthesise(Goniometer(layout), source.channels, source.brdf, {}, 0);
+}
+
+template <class Write>
+Paths WriteSamples(const WriteSource& source, const Path& path, Write&& write) {
+  if (source.measurement != nullptr) {
+    write(*source.measurement);
+  } else {
+    write(Tabulated(source));
+  }
+  return {path};
+}
+
+BrdfFunction FunctionOf(const WriteSource& source) {
+  return source.brdf ? source.brdf : Interpolate(*source.measurement);
+}
+
+Paths WriteCsvFormat(const WriteSource& source, const WriteOptions&, const Path& path) {
+  return WriteSamples(source, path, [&](const Measurement& measurement) { WriteCsv(measurement, {}, path); });
+}
+
+Paths WriteAltaFormat(const WriteSource& source, const WriteOptions&, const Path& path) {
+  return WriteSamples(source, path, [&](const Measurement& measurement) { WriteAlta(measurement, path); });
+}
+
+Paths WriteMountainFormat(const WriteSource& source, const WriteOptions&, const Path& path) {
+  if (source.measurement != nullptr && !(source.measurement->isotropic && source.brdf)) {
+    return WriteMountain(*source.measurement, path);
+  }
+  return WriteMountain(Tabulated(source), path);
+}
+
+Paths WriteMerlFormat(const WriteSource& source, const WriteOptions& options, const Path& path) {
+  WriteMerl(FunctionOf(source), source.channels, {options.merl_cell, 1e-3}, path);
+  return {path};
+}
+
+Paths WriteRglFormat(const WriteSource& source, const WriteOptions& options, const Path& path) {
+  RglWriteOptions rgl = options.rgl;
+  rgl.isotropic = source.isotropic;
+  if (source.measurement != nullptr) rgl.description = "lobefit, from " + source.measurement->source;
+  WriteRgl(FunctionOf(source), source.channels, rgl, path);
+  return {path};
+}
+
+Paths WriteExrFormat(const WriteSource& source, const WriteOptions& options, const Path& path) {
+  const bool utia = options.exr.axes == ExrAxes::kUtia;
+  const std::size_t size = utia ? 288 : options.exr_size;
+  WriteExr(FunctionOf(source), source.channels, options.exr, size, size,
+           source.measurement != nullptr ? source.measurement->source : "", path);
+  return {path};
+}
+
+Paths WriteTensorTreeFormat(const WriteSource& source, const WriteOptions& options, const Path& path) {
+  TensorTreeOptions tree;
+  tree.isotropic = source.isotropic;
+  tree.log2_resolution = options.tensor_tree_log2;
+  WriteTensorTree(FunctionOf(source), source.channels, tree, path);
+  return {path};
+}
+
+std::string Percent(double fraction) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g %%", 100 * fraction);
+  return text;
+}
+
+// What the target leaves out by its nature.
+void AddWords(const WriteSource& source, const WriteFormat& format, const WriteOptions& options,
+              Conversion* conversion) {
+  const std::string name = format.name;
+  if (format.is_grid) {
+    conversion->losses.push_back(source.brdf ? "resampled to the grid of the format"
+                                             : "samples interpolated to the grid of the format");
+  }
+  if (source.measurement != nullptr && !source.measurement->samples.weight.empty()) {
+    conversion->losses.emplace_back("the weights of the samples are not written");
+  }
+  if (source.measurement != nullptr && source.measurement->set_aside.total() > 0) {
+    conversion->losses.push_back(std::to_string(source.measurement->set_aside.total()) +
+                                 " samples that were set aside in reading are not written");
+  }
+  if ((name == "alta" || name == "mountain") && !source.channels.wavelengths_nm.empty()) {
+    conversion->losses.emplace_back("the format has no place for wavelengths");
+  }
+  if (name == "exr") {
+    conversion->losses.emplace_back(options.exr.axes == ExrAxes::kHemisphere ? "only one incident direction"
+                                    : options.exr.axes == ExrAxes::kUtia
+                                        ? "directions beyond 75 degrees are left out"
+                                        : "only one phi_d, and no dependence on the azimuth of the sample");
+  }
+  if (name == "mountain" && source.channels.names == std::vector<std::string>{"R", "G", "B"}) {
+    conversion->losses.emplace_back("R G B became CIE X Y Z (sRGB primaries); the difference below is that of X, Y, Z");
+  }
+  if (name == "tensor-tree" && source.channels.names == std::vector<std::string>{"R", "G", "B"}) {
+    conversion->losses.emplace_back("R G B became CIE Y, u', v' (sRGB primaries)");
+  }
+}
+
+// A measurement whose channels are those that a reader of the target finds: X Y Z for R G B.
+Measurement ToXyz(const Measurement& rgb) {
+  constexpr double kMatrix[3][3] = {{0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505}};
+  Measurement xyz = rgb;
+  xyz.channels.names = {"X", "Y", "Z"};
+  for (std::size_t i = 0; i < rgb.samples.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      xyz.samples.values[c][i] = kMatrix[c][0] * rgb.samples.values[0][i] + kMatrix[c][1] * rgb.samples.values[1][i] +
+                                 kMatrix[c][2] * rgb.samples.values[2][i];
+    }
+  }
+  return xyz;
+}
+
+}  // namespace
+
+const std::vector<WriteFormat>& WriteFormats() {
+  static const std::vector<WriteFormat> formats = {
+      {"csv", "csv", "rows of directions and values", false, WriteCsvFormat},
+      {"alta", "alta", "ALTA text", false, WriteAltaFormat},
+      {"mountain", "txt", "pab-opto Mountain text, one file an incidence", false, WriteMountainFormat},
+      {"merl", "binary", "MERL table, isotropic R G B only", true, WriteMerlFormat},
+      {"rgl", "bsdf", "RGL/EPFL measured material of Mitsuba 3 and pbrt-v4", true, WriteRglFormat},
+      {"exr", "exr", "OpenEXR slice or hemisphere", true, WriteExrFormat},
+      {"tensor-tree", "xml", "BSDF-XML tensor tree of Radiance", true, WriteTensorTreeFormat},
+  };
+  return formats;
+}
+
+const WriteFormat& FindWriteFormat(const std::optional<std::string>& name, const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  const std::string extension = ToLower(path.extension().string());
+  for (const WriteFormat& format : WriteFormats()) {
+    if (name ? *name == format.name : extension == std::string(".") + format.extension) return format;
+    names.push_back(std::string(format.name) + " (." + format.extension + ")");
+  }
+  throw UsageError(name ? "the format '" + Excerpt(*name) + "' cannot be written; allowed are " + Join(names)
+                        : path.string() +
+                              ": the name does not say which format to write; choose one with --to: " + Join(names));
+}
+
+BrdfFunction TabulatedBrdf(const std::filesystem::path& path, const Measurement& measurement) {
+  if (measurement.format != "rgl") return nullptr;
+  const MappedFile file(path);
+  const auto brdf = std::make_shared<const RglBrdf>(path, file.bytes());
+  return [brdf](const Vec3& wi, const Vec3& wo, double* values) { brdf->Evaluate(wi, wo, values); };
+}
+
+Conversion Convert(const WriteSource& source, const WriteFormat& format, const WriteOptions& options,
+                   const std::filesystem::path& path) {
+  Conversion conversion;
+  WriteSource with_function = source;
+  // Interpolated once, for writing and for comparing.
+  if (format.is_grid && !source.brdf) with_function.brdf = Interpolate(*source.measurement);
+  conversion.files = format.write(with_function, options, path);
+  AddWords(source, format, options, &conversion);
+  if (conversion.files.size() != 1) return conversion;
+
+  ReadOptions read;
+  read.merl_cell = options.merl_cell;
+  const Measurement back = ReadMeasurement(conversion.files[0], read);
+  const Measurement original = source.measurement != nullptr ? *source.measurement : Tabulated(source);
+  const bool one_slice = back.format == "exr" && options.exr.axes != ExrAxes::kUtia;
+  const bool to_xyz =
+      back.channels.names == std::vector<std::string>{"X", "Y", "Z"} && original.channels.names[0] == "R";
+  if (one_slice) {
+    // Only what the image holds can be compared.
+    conversion.difference = CompareWith(back, FunctionOf(with_function));
+  } else if (back.channels.size() == original.channels.size()) {
+    const BrdfFunction tabulated = TabulatedBrdf(conversion.files[0], back);
+    conversion.difference =
+        CompareWith(to_xyz ? ToXyz(original) : original, tabulated ? tabulated : Interpolate(back), 20000);
+  }
+  conversion.losses.push_back("relative difference: median " + Percent(conversion.difference.median) +
+                              ", 90 % of the samples within " + Percent(conversion.difference.percentile_90) +
+                              ", at most " + Percent(conversion.difference.maximum));
+  return conversion;
+}
+
+}  // namespace lobefit
