@@ -129,7 +129,8 @@ SelEllipsoid SelEllipsoidOf(double alpha_x, double alpha_y) {
 bool SelIntersect(double alpha_x, double alpha_y, const Vec3& origin, const Vec3& direction, SelHit* near, SelHit* far,
                   SelKink kink) {
   const LargerSquare larger = LargerAlphaSquare(alpha_x, alpha_y, kink);
-  const auto [center, axes] = SelEllipsoidOf(alpha_x, alpha_y);
+  const SelEllipsoid ellipsoid = SelEllipsoidOf(alpha_x, alpha_y);
+  const Vec3 &center = ellipsoid.center, &axes = ellipsoid.semi_axes;
   const Vec3 o = {origin.x / axes.x, origin.y / axes.y, (origin.z - center.z) / axes.z};
   const Vec3 d = {direction.x / axes.x, direction.y / axes.y, direction.z / axes.z};
   const double dd = Dot(d, d), od = Dot(o, d);

@@ -23,7 +23,7 @@ T CarlsonMax(const T& a, const T& b) {
 }
 template <class T>
 T CarlsonAbs(const T& a) {
-  return a < T(0.0) ? -a : a;
+  return a < 0.0 ? -a : a;
 }
 
 }  // namespace internal
@@ -60,7 +60,7 @@ T CarlsonRD(T x, T y, T z) {
   using std::sqrt;
   const T mean0 = (x + y + 3.0 * z) / 5.0;
   const T spread = CarlsonMax(CarlsonMax(CarlsonAbs(mean0 - x), CarlsonAbs(mean0 - y)), CarlsonAbs(mean0 - z));
-  T mean = mean0, dx = mean0 - x, dy = mean0 - y, sum = T(0.0);
+  T mean = mean0, dx = mean0 - x, dy = mean0 - y, sum(0.0);
   double power = 1;
   const int steps = internal::CarlsonSteps(mean0, spread);
   for (int i = 0; i < steps; ++i) {
