@@ -11,8 +11,8 @@
 
 #include "lobefit/io/alta_directions.h"
 #include "lobefit/io/formats.h"
-#include "lobefit/io/place.h"
 #include "lobefit/io/options.h"
+#include "lobefit/io/place.h"
 
 namespace lobefit {
 namespace {
@@ -48,6 +48,7 @@ Header ReadHeader(const InputFile& file) {
     if (line.size() == 1 || line[1] == ' ' || line[1] == '\t') continue;
     line.remove_prefix(1);
     const std::vector<std::string_view> words = SplitBlanks(line);
+    if (words.empty()) continue;
     const bool end_mark = IsEndMark(words), begin_stream = words[0] == "BEGIN_STREAM";
     if (end_mark || begin_stream) {
       header.binary = begin_stream;
@@ -152,7 +153,8 @@ void ReadOutput(const InputFile& file, const Header& header, const ReadOptions& 
                "#PARAM_OUT is '" + Excerpt(name) +
                    "', which does not say what the values are; known are "
                    "INV_STERADIAN, INV_STERADIAN_COSINE_FACTOR, RGB_COLOR and XYZ_COLOR: state it with "
-                   "--value-kind f|f-cos-o|f-cos-i|pi-f|intensity");
+                   "--value-kind, one of " +
+                   AllowedValueKinds());
   }
   layout->kind = options.value_kind.value_or(layout->kind);
   if ((name == "RGB_COLOR" || name == "XYZ_COLOR") && layout->outputs != 3) {
@@ -332,9 +334,10 @@ Measurement ReadText(const InputFile& file, const Header& header, Layout* layout
     const std::size_t expected = plain + layout->interval_columns();
     if (fields.size() != expected) {
       FailAtLine(file, at,
-                 "has " + std::to_string(fields.size()) + " numbers; the header announces " +
-                     std::to_string(layout->input->dimension) + " coordinates, " + std::to_string(layout->outputs) +
-                     " values and " + std::to_string(layout->interval_columns()) + " columns of confidence");
+                 "has " + std::to_string(fields.size()) + " numbers; the header announces " + std::to_string(expected) +
+                     " (coordinates " + std::to_string(layout->input->dimension) + ", values " +
+                     std::to_string(layout->outputs) + ", columns of confidence " +
+                     std::to_string(layout->interval_columns()) + ")");
     }
     row.clear();
     for (std::size_t i = 0; i < fields.size(); ++i) {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lobefit/io/formats.h"
-#include "lobefit/io/place.h"
 #include "lobefit/io/options.h"
+#include "lobefit/io/place.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {
@@ -20,6 +20,7 @@ struct Header {
   std::optional<std::size_t> points;
   std::size_t points_line = 0;
   std::string quantity;
+  std::size_t quantity_line = 0;
 };
 
 struct Columns {
@@ -90,6 +91,7 @@ Header ReadHeader(const InputFile& file, LineReader* lines) {
       header.points_line = lines->line_number();
     } else if (words[0] == "MEAS_NAME") {
       header.quantity = std::string(value);
+      header.quantity_line = lines->line_number();
     }
   }
   FailAtLine(
@@ -106,7 +108,7 @@ Quantity QuantityOf(const InputFile& file, const Header& header, const ReadOptio
   if (options.value_kind) return {*options.value_kind, ""};
   const std::string name = ToLower(header.quantity);
   if (name == "btdf") {
-    FailAtLine(file, header.columns_line, "MEAS_NAME is BTDF, transmission; only reflection can be fitted");
+    FailAtLine(file, header.quantity_line, "MEAS_NAME is BTDF, transmission; only reflection can be fitted");
   }
   if (name == "dsf") return {ValueKind::kBrdfCosO, " (header)"};
   if (name == "brdf" || name == "bsdf") return {ValueKind::kBrdf, " (header)"};

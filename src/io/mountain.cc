@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lobefit/io/formats.h"
-#include "lobefit/io/place.h"
 #include "lobefit/io/options.h"
+#include "lobefit/io/place.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {
@@ -162,8 +162,8 @@ Measurement ReadMountain(const InputFile& file, const ReadOptions& options) {
   Measurement measurement = builder->Finish();
   if (header.kind_word == "btdf" || transmitted == rows) {
     FailAtLine(file, last,
-               "the file holds transmission (all " + std::to_string(rows) +
-                   " rows are on the side away from the light or the format is BTDF); only reflection can "
+               "the file holds transmission (number of rows " + std::to_string(rows) +
+                   ", all on the side away from the light or the format is BTDF); only reflection can "
                    "be fitted");
   }
   measurement.conventions["angle-unit"] = "deg (format)";

@@ -51,7 +51,10 @@ std::optional<std::size_t> CheckedProduct(std::initializer_list<std::size_t> fac
 double NumberAt(const InputFile& file, std::size_t line, std::string_view field, const std::string& what) {
   const std::optional<double> number = ParseDouble(field);
   if (!number) {
-    FailAtLine(file, line, what + " is '" + Excerpt(field) + "', which is not a number; write it as in 0.25 or 2.5e-1");
+    const bool comma = field.find(',') != std::string_view::npos;
+    FailAtLine(file, line,
+               what + " is '" + Excerpt(field) + "', which is not a number; " +
+                   (comma ? "write a decimal point instead of a comma" : "write it as in 0.25 or 2.5e-1"));
   }
   return *number;
 }

@@ -372,13 +372,13 @@ TEST(Alta, SaysWhatIsWrongAndWhere) {
                           "COS_TH, COS_TK, "))
       << unknown;
   EXPECT_EQ(ErrorOf(ReadAlta, Text("COS_TH", "1 1", "0.5 1 2\n")),
-            "line 6: has 3 numbers; the header announces 1 coordinates, 1 values and 0 columns of confidence");
+            "line 6: has 3 numbers; the header announces 2 (coordinates 1, values 1, columns of confidence 0)");
   EXPECT_EQ(ErrorOf(ReadAlta, Text("RUSIN_TH_TD", "2 1", "45 30 1\n")),
             "line 6: coordinate 1 is 45, beyond 2 pi; ALTA angles are in radians and vectors of length 1");
   EXPECT_EQ(ErrorOf(ReadAlta, Text("COS_TH", "1 1", "0.5 1\n", "#PARAM_OUT ENERGY\n")),
             "line 5: #PARAM_OUT is 'ENERGY', which does not say what the values are; known are INV_STERADIAN, "
-            "INV_STERADIAN_COSINE_FACTOR, RGB_COLOR and XYZ_COLOR: state it with --value-kind "
-            "f|f-cos-o|f-cos-i|pi-f|intensity");
+            "INV_STERADIAN_COSINE_FACTOR, RGB_COLOR and XYZ_COLOR: state it with --value-kind, "
+            "one of f, f-cos-o, f-cos-i, pi-f, intensity, pi-f-cos-o");
   EXPECT_EQ(ErrorOf(ReadAlta, Text("COS_TH", "1 1", "")), "line 5: the file ends without a row of data");
   EXPECT_EQ(ErrorOf(ReadAlta, Text("COS_TH", "1 1", "#DIM 1 1\n0.5 1\n")),
             "line 6: the key #DIM stands in line 3 already");

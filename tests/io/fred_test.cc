@@ -42,7 +42,7 @@ TEST(Fred, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(ErrorOf(ReadFred, head + "10 0\n1 2 3 4\n"),
             "line 4: has 4 fields; allowed are 2 (theta_i phi_i, a new incidence) or 3 (theta_s phi_s value)");
   EXPECT_EQ(ErrorOf(ReadFred, head + "10 0\n1 2 3,5\n"),
-            "line 4: value is '3,5', which is not a number; write it as in 0.25 or 2.5e-1");
+            "line 4: value is '3,5', which is not a number; write a decimal point instead of a comma");
   EXPECT_EQ(
       ErrorOf(ReadFred, "type bsdf_data\nformat angles=deg bsdf=log\n"),
       "line 2: the format line has 'bsdf=log', which is not known; allowed are angles=deg, angles=rad, bsdf=value "

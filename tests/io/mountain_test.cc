@@ -71,10 +71,10 @@ TEST(Mountain, SaysWhatIsWrongAndWhere) {
             "line 4: a header line stands after the first row; all header lines come before the rows");
   EXPECT_EQ(ErrorOf(ReadMountain, head + "#datapoints_in_file: 2\n1 2 3"),
             "line 4: the file ends after 1 rows, but line 3 announces 2 (#datapoints_in_file); it may be cut off");
-  EXPECT_EQ(
-      ErrorOf(ReadMountain, head + "120 2 3"),
-      "line 3: the file holds transmission (all 1 rows are on the side away from the light or the format is BTDF); "
-      "only reflection can be fitted");
+  EXPECT_EQ(ErrorOf(ReadMountain, head + "120 2 3"),
+            "line 3: the file holds transmission (number of rows 1, all on the side away from the light or the format "
+            "is BTDF); "
+            "only reflection can be fitted");
   EXPECT_EQ(ErrorOf(ReadMountain, head), "line 2: the file ends after its header; it has no rows and may be cut off");
 }
 
