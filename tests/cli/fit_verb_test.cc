@@ -57,7 +57,7 @@ TEST_F(FitVerb, TakesARecipeByNameOrFileAndAPartOfTheFile) {
 TEST_F(FitVerb, ExitsWith4WhereTheFitIsNotDetermined) {
   // A mirror pair of directions, measured again and again a little aside: f0, alpha and diffuse cannot be told apart.
   std::string csv = "theta_i,phi_i,theta_o,phi_o,value\n";
-  for (int i = 0; i < 12; ++i) csv += "20,0," + std::to_string(20 + 1e-7 * i) + ",180,0.5\n";
+  for (int i = 0; i < 12; ++i) csv += "20,0," + std::to_string(20 + 1e-5 * i) + ",180,0.5\n";
   WriteWholeFile(folder_ / "one.csv", csv);
   const ProgramResult result = Shell("lobefit fit one.csv --recipe ggx --no-report");
   EXPECT_EQ(result.exit_code, 4) << result.out << result.err;
