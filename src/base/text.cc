@@ -13,6 +13,8 @@ bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 // Edit distance, given up above 2.
 std::size_t EditDistance(std::string_view a, std::string_view b) {
+  // A difference in length is a lower bound; words from hostile files may be very long.
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > 2) return 3;
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
