@@ -8,7 +8,7 @@
 
 namespace lobefit {
 
-// int E (w.n) dw = int_0^1 int_0^2pi E dphi d(mu^2) / 2.
+// Ebar = (1 / pi) int_0^1 int_0^2pi E mu dphi dmu; E is smooth in mu, not in mu^2.
 EnergyCompensation::EnergyCompensation(const NormalDistribution& distribution, const Shadowing& shadowing,
                                        FresnelOfCosine fresnel, double tolerance, int nodes)
     : distribution_(distribution),
@@ -19,10 +19,10 @@ EnergyCompensation::EnergyCompensation(const NormalDistribution& distribution, c
   const QuadratureRule rule = GaussLegendre(nodes);
   double gradient[kMaxDistributionParameters];
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-    const double mu = std::sqrt(0.5 * (1.0 + rule.nodes[i]));
+    const double mu = 0.5 * (1.0 + rule.nodes[i]);
     for (int j = 0; j < nodes; ++j) {
       const Vec3 w = FromSpherical(std::acos(mu), 2.0 * kPi * (j + 0.5) / nodes);
-      const double weight = 0.5 * rule.weights[i] / nodes;
+      const double weight = rule.weights[i] * mu / nodes;
       mean_missing_ += weight * EnergyMissing(distribution, shadowing, w, gradient, tolerance);
       for (std::size_t k = 0; k < dmean_missing_.size(); ++k) dmean_missing_[k] += weight * gradient[k];
     }
