@@ -64,54 +64,74 @@ std::vector<DistinctMinimum> Search(const Problem& problem, const Layout& layout
   return Distinct(std::move(solutions), problem.size() * problem.channels());
 }
 
+// Weight of a sample under a metric beyond the recipe's weighting.
+double MetricWeight(Metric metric, const Samples& samples, std::size_t i) {
+  if (metric != Metric::kNgan && metric != Metric::kLowLog) return 1;
+  const double sin_i = std::sqrt(std::max(0.0, 1 - samples.wi_z[i] * samples.wi_z[i]));
+  if (metric == Metric::kLowLog) return sin_i;
+  return sin_i * std::sqrt(std::max(0.0, 1 - samples.wo_z[i] * samples.wo_z[i]));
+}
+
+struct SquareSum {
+  double square = 0, weight = 0;
+};
+
+// Adds the squared residuals of samples [begin, begin + model.size()) in one channel under every metric; each transform
+// is applied once.
+void AddSquares(const Samples& samples, std::size_t channel, std::size_t begin, const std::vector<double>& f,
+                bool by_solid_angle, std::vector<SquareSum>* sums) {
+  const std::size_t count = f.size();
+  std::vector<double> model(count), target(count), residual(count);
+  const double* measured = samples.values[channel].data() + begin;
+  const double* cos_i = samples.wi_z.data() + begin;
+  for (const Transform transform :
+       {Transform::kLog1p, Transform::kCubeRoot, Transform::kLinear, Transform::kRelative}) {
+    TransformMeasured(transform, f.data(), cos_i, count, model.data());
+    TransformMeasured(transform, measured, cos_i, count, target.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      residual[i] = model[i] - target[i];
+      if (transform == Transform::kRelative) residual[i] = target[i] > 0 ? residual[i] / target[i] : kNan;
+    }
+    for (std::size_t m = 0; m < MetricChoices().size(); ++m) {
+      const Metric metric = MetricChoices()[m].value;
+      if (TransformOf(metric) != transform) continue;
+      SquareSum& sum = (*sums)[m];
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!std::isfinite(residual[i])) continue;
+        const double w =
+            MetricWeight(metric, samples, begin + i) * (by_solid_angle ? samples.solid_angle[begin + i] : 1.0);
+        sum.square += w * residual[i] * residual[i];
+        sum.weight += w;
+      }
+    }
+  }
+}
+
 // Root mean square residual under each metric with the recipe's weighting, over all samples and channels that the
 // metric can take.
 std::vector<MetricError> ErrorsUnderAllMetrics(const Problem& problem, const Samples& samples, const Layout& layout,
                                                const std::vector<double>& u, ThreadPool* pool) {
   const KernelModel kernel = layout.ToKernel(u.data());
+  const bool by_solid_angle = layout.recipe().weighting == Weighting::kSolidAngle;
   const std::size_t metrics = MetricChoices().size(), runs = RunCount(samples.size());
-  std::vector<std::vector<double>> squares(runs, std::vector<double>(metrics, 0.0)), weights = squares;
+  std::vector<std::vector<SquareSum>> sums(runs, std::vector<SquareSum>(metrics));
   pool->Run(runs, [&](std::size_t run) {
     std::vector<std::vector<double>> f;
-    constexpr std::size_t kPiece = 2048;
-    std::vector<double> model(kPiece), target(kPiece);
+    constexpr std::size_t kPiece = 1024;
     const std::size_t last = RunBegin(samples.size(), run + 1);
     for (std::size_t begin = RunBegin(samples.size(), run); begin < last; begin += kPiece) {
-      const std::size_t end = std::min(last, begin + kPiece);
-      ModelValues(problem.kernel_samples(), kernel, begin, end, &f);
-      for (std::size_t m = 0; m < metrics; ++m) {
-        const Metric metric = MetricChoices()[m].value;
-        const Transform transform = TransformOf(metric);
-        for (std::size_t c = 0; c < samples.values.size(); ++c) {
-          TransformMeasured(transform, f[c].data(), samples.wi_z.data() + begin, end - begin, model.data());
-          TransformMeasured(transform, samples.values[c].data() + begin, samples.wi_z.data() + begin, end - begin,
-                            target.data());
-          for (std::size_t i = begin; i < end; ++i) {
-            double w = layout.recipe().weighting == Weighting::kSolidAngle ? samples.solid_angle[i] : 1.0;
-            if (metric == Metric::kNgan || metric == Metric::kLowLog)
-              w *= std::sqrt(std::max(0.0, 1 - samples.wi_z[i] * samples.wi_z[i]));
-            if (metric == Metric::kNgan) w *= std::sqrt(std::max(0.0, 1 - samples.wo_z[i] * samples.wo_z[i]));
-            double r = model[i - begin] - target[i - begin];
-            if (transform == Transform::kRelative) {
-              if (target[i - begin] <= 0) continue;
-              r /= target[i - begin];
-            }
-            if (!std::isfinite(r)) continue;
-            squares[run][m] += w * r * r;
-            weights[run][m] += w;
-          }
-        }
-      }
+      ModelValues(problem.kernel_samples(), kernel, begin, std::min(last, begin + kPiece), &f);
+      for (std::size_t c = 0; c < f.size(); ++c) AddSquares(samples, c, begin, f[c], by_solid_angle, &sums[run]);
     }
   });
   std::vector<MetricError> errors;
   for (std::size_t m = 0; m < metrics; ++m) {
-    double square = 0, weight = 0;
+    SquareSum total;
     for (std::size_t run = 0; run < runs; ++run) {
-      square += squares[run][m];
-      weight += weights[run][m];
+      total.square += sums[run][m].square;
+      total.weight += sums[run][m].weight;
     }
-    errors.push_back({MetricChoices()[m].name, weight > 0 ? std::sqrt(square / weight) : kNan});
+    errors.push_back({MetricChoices()[m].name, total.weight > 0 ? std::sqrt(total.square / total.weight) : kNan});
   }
   return errors;
 }
@@ -221,7 +241,8 @@ MeasurementTraits TraitsOf(const Measurement& measurement) {
   MeasurementTraits traits;
   traits.isotropic = measurement.isotropic;
   traits.samples = measurement.samples.size();
-  traits.in_plane = IsInPlane(measurement.samples);
+  // Isotropic tables are stored with the half vector in one plane, but their samples are not in a plane of incidence.
+  traits.in_plane = !measurement.isotropic && IsInPlane(measurement.samples);
   if (traits.in_plane) {
     double best = 0;
     for (std::size_t i = 0; i < measurement.samples.size(); ++i) {

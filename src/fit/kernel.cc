@@ -61,15 +61,19 @@ HWY_INLINE V64 ApplyTransform(Transform transform, V64 f, V64 cos_i, V64 target,
 
 void TransformArrays(int transform, const double* f_r, const double* cos_i, std::size_t count, double* target) {
   const std::size_t lanes = hn::Lanes(D64());
-  double pad_f[hn::MaxLanes(D64())] = {}, pad_c[hn::MaxLanes(D64())] = {}, out[hn::MaxLanes(D64())];
-  for (std::size_t i = 0; i < count; i += lanes) {
-    const std::size_t n = std::min(lanes, count - i);
-    for (std::size_t k = 0; k < n; ++k) pad_f[k] = f_r[i + k];
-    for (std::size_t k = 0; k < n; ++k) pad_c[k] = cos_i[i + k];
-    const V64 one = Constant(1);
-    hn::StoreU(ApplyTransform(static_cast<Transform>(transform), Load(pad_f), Load(pad_c), one, nullptr), D64(), out);
-    for (std::size_t k = 0; k < n; ++k) target[i + k] = out[k];
+  const V64 one = Constant(1);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    hn::StoreU(ApplyTransform(static_cast<Transform>(transform), Load(f_r + i), Load(cos_i + i), one, nullptr), D64(),
+               target + i);
   }
+  if (i == count) return;
+  constexpr std::size_t kMaxLanes = hn::MaxLanes(D64());
+  double pad_f[kMaxLanes] = {}, pad_c[kMaxLanes] = {}, out[kMaxLanes];
+  std::copy(f_r + i, f_r + count, pad_f);
+  std::copy(cos_i + i, cos_i + count, pad_c);
+  hn::StoreU(ApplyTransform(static_cast<Transform>(transform), Load(pad_f), Load(pad_c), one, nullptr), D64(), out);
+  std::copy(out, out + (count - i), target + i);
 }
 
 // Fresnel factor of a channel: schlick ? f0 + (1 - f0) p5 : scale.
@@ -234,10 +238,8 @@ class Block {
     contracted_.assign(gradient ? lobes * 5 * kBlock : 0, 0);
     p5_.assign(kBlock, 0);
     cos_d_.assign(kBlock, 0);
-    cos_i_.assign(kBlock, 0);
-    sqrt_weight_.assign(kBlock, 1);
+    ones_.assign(kBlock, 1);
     f_.assign(channels * kBlock, 0);
-    target_.assign(channels * kBlock, 0);
     residual_.assign(channels * kBlock, 0);
     slope_.assign(gradient ? channels * kBlock : 0, 0);
     columns_.assign(gradient ? model.columns() * kBlock : 0, 0);
@@ -252,8 +254,7 @@ class Block {
                                &directions.wo_x, &directions.wo_y, &directions.wo_z};
     for (std::size_t k = 0; k < 6; ++k) *fields[k] = samples_.direction[k] + begin;
     directions.count = count;
-    std::copy_n(directions.wi_z, count, cos_i_.begin());
-    std::fill(cos_i_.begin() + static_cast<std::ptrdiff_t>(count), cos_i_.end(), 0.0);
+    cos_i_ = Padded(directions.wi_z, 0.0, &cos_i_pad_);
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) EvaluateLobe(l, directions);
     HWY_DYNAMIC_DISPATCH(SchlickArrays)(cos_d_.data(), padded_, p5_.data());
     for (std::size_t c = 0; c < model_.channels(); ++c) {
@@ -269,14 +270,12 @@ class Block {
 
   // Residuals (and slopes), reweighted by the loss. Returns the sum of rho.
   double Residuals(std::size_t begin, double* sum_robust_weight) {
-    if (samples_.sqrt_weight != nullptr) std::copy_n(samples_.sqrt_weight + begin, count_, sqrt_weight_.begin());
-    std::fill(sqrt_weight_.begin() + static_cast<std::ptrdiff_t>(count_), sqrt_weight_.end(), 0.0);
+    const double* sqrt_weight =
+        Padded(samples_.sqrt_weight != nullptr ? samples_.sqrt_weight + begin : ones_.data(), 0.0, &sqrt_weight_pad_);
     for (std::size_t c = 0; c < model_.channels(); ++c) {
-      double* target = target_.data() + c * kBlock;
-      std::copy_n(samples_.target[c] + begin, count_, target);
-      std::fill(target + count_, target + padded_, 1.0);
+      const double* target = Padded(samples_.target[c] + begin, 1.0, &target_pad_);
       HWY_DYNAMIC_DISPATCH(ResidualArrays)
-      (static_cast<int>(model_.transform), f_.data() + c * kBlock, cos_i_.data(), target, sqrt_weight_.data(), padded_,
+      (static_cast<int>(model_.transform), f_.data() + c * kBlock, cos_i_, target, sqrt_weight, padded_,
        residual_.data() + c * kBlock, gradient_ ? slope_.data() + c * kBlock : nullptr);
     }
     double sum = 0;
@@ -339,12 +338,21 @@ class Block {
     (gradients, lobe.jacobian.data(), lobe.columns, padded_, kBlock, contracted_.data() + l * 5 * kBlock);
   }
 
+  // An input array of this block: in place where the block is full, else a copy with `pad` behind it.
+  const double* Padded(const double* from, double pad, std::vector<double>* copy) const {
+    if (padded_ == count_) return from;
+    copy->assign(from, from + count_);
+    copy->resize(padded_, pad);
+    return copy->data();
+  }
+
   const KernelSamples& samples_;
   const KernelModel& model_;
   const bool gradient_;
   std::size_t count_ = 0, padded_ = 0;
-  std::vector<double> specular_, gradients_, contracted_, p5_, cos_d_, cos_i_, sqrt_weight_, f_, target_, residual_,
-      slope_, columns_;
+  const double* cos_i_ = nullptr;
+  std::vector<double> specular_, gradients_, contracted_, p5_, cos_d_, f_, residual_, slope_, columns_, ones_;
+  std::vector<double> cos_i_pad_, sqrt_weight_pad_, target_pad_;
 };
 
 }  // namespace
