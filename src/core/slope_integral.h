@@ -1,5 +1,5 @@
 // Integrals of the GGX slope distribution over triangles and polygons of the slope plane [Loubet section 3], for
-// averages over a detector's aperture or a pixel's footprint, and samples restricted to a triangle [Loubet section 4].
+// averages over a detector's aperture or a pixel's footprint. slope_sampling.h draws from it inside a triangle.
 //
 // The distribution is P(x, y) = 1 / (pi alpha_x alpha_y (1 + x^2/alpha_x^2 + y^2/alpha_y^2)^2), eq 3; int P = 1 over
 // the plane. Alphas > 0. Any ellipsoid or off-centre correlated GGX is this one after an affine map of the slopes: y =
