@@ -199,7 +199,7 @@ void DrawSlice(const Curves& curves, const Slice& slice, Canvas* canvas, const B
 }
 
 void Draw(const Curves& curves, Canvas* canvas, const Box& content) {
-  const Box area = Inset(content, kLeft, 4, 4, kBottom + 22);
+  const Box area = Inset(content, kLeft, 4, 4, kBottom + 36);
   const double width =
       (area.width - kGapX * static_cast<double>(curves.columns - 1)) / static_cast<double>(curves.columns);
   const double height = (area.height - kGapY * static_cast<double>(curves.rows - 1)) / static_cast<double>(curves.rows);
@@ -224,8 +224,13 @@ void Draw(const Curves& curves, Canvas* canvas, const Box& content) {
         Join({" ", Count(curves.not_shown),
               curves.not_shown == 1 ? " value below the scale or negative." : " values below the scale or negative."},
              "");
-  canvas->Text({area.x, content.bottom() - 5}, note,
-               {.size = style::kNoteSize, .color = style::kSecondary, .markup = true});
+  TextStyle small = style::Note();
+  small.markup = true;
+  double y = content.bottom() - 21;
+  for (const std::string& line : canvas->Wrap(note, small, area.width)) {
+    canvas->Text({area.x, y}, line, small);
+    y += 16;
+  }
 }
 
 }  // namespace
@@ -246,7 +251,7 @@ std::optional<Panel> CurvesPanel(const ReportData& data) {
   panel.legend.push_back({LegendEntry::Mark::kLine, data.channels() == 1 ? style::kInk : neutral, "fitted"});
   panel.legend.push_back({LegendEntry::Mark::kBand, neutral, "5–95 % of residuals"});
   panel.height = [curves](Canvas*, double) {
-    return static_cast<double>(curves->rows) * (curves->rows == 1 ? 400.0 : 290.0) + kBottom + 40;
+    return static_cast<double>(curves->rows) * (curves->rows == 1 ? 400.0 : 290.0) + kBottom + 54;
   };
   panel.draw = [curves](Canvas* canvas, const Box& content) { Draw(*curves, canvas, content); };
   return panel;

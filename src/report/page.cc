@@ -57,20 +57,6 @@ void DrawPanel(Canvas* canvas, const Panel& panel, const Box& box) {
   panel.draw(canvas, Inset(box, 0, kPanelHead, 0, 0));
 }
 
-std::string ModelWords(const Model& model) {
-  std::string words;
-  for (const Lobe& lobe : model.lobes) {
-    if (!words.empty()) words += "  +  ";
-    words += Find(NdfChoices(), NameOf(NdfChoices(), lobe.ndf))->description;
-  }
-  if (!model.lobes.empty()) {
-    words += std::string("  ·  masking ") + NameOf(MaskingChoices(), model.lobes[0].masking) + "  ·  Fresnel " +
-             NameOf(FresnelChoices(), model.lobes[0].fresnel);
-  }
-  if (model.diffuse != Diffuse::kNone) words += std::string("  ·  diffuse ") + NameOf(DiffuseChoices(), model.diffuse);
-  return words;
-}
-
 void DrawHeader(Canvas* canvas, const ReportData& data) {
   const Material& material = data.material;
   const Termination& end = material.termination;
@@ -143,6 +129,20 @@ double DrawFooter(Canvas* canvas, const ReportData& data, double y, bool draw) {
 }
 
 }  // namespace
+
+std::string ModelWords(const Model& model) {
+  std::string words;
+  for (const Lobe& lobe : model.lobes) {
+    if (!words.empty()) words += "  +  ";
+    words += Find(NdfChoices(), NameOf(NdfChoices(), lobe.ndf))->description;
+  }
+  if (!model.lobes.empty()) {
+    words += std::string("  ·  masking ") + NameOf(MaskingChoices(), model.lobes[0].masking) + "  ·  Fresnel " +
+             NameOf(FresnelChoices(), model.lobes[0].fresnel);
+  }
+  if (model.diffuse != Diffuse::kNone) words += std::string("  ·  diffuse ") + NameOf(DiffuseChoices(), model.diffuse);
+  return words;
+}
 
 Canvas DrawPage(const ReportData& data, double scale, const std::shared_ptr<Fonts>& fonts,
                 std::vector<std::string>* ids) {

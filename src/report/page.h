@@ -14,6 +14,12 @@ namespace lobefit {
 Canvas DrawPage(const ReportData& data, double scale, const std::shared_ptr<Fonts>& fonts,
                 std::vector<std::string>* ids = nullptr);
 
+// "isotropic GGX · masking ...": the choices of a model on one line.
+std::string ModelWords(const Model& model);
+
+// The whole live page.
+std::string ReportHtml(const ReportData& data, const std::shared_ptr<Fonts>& fonts);
+
 // One panel alone, without the page around it, `width` units wide.
 Canvas DrawPanelAlone(const Panel& panel, double width, double scale, const std::shared_ptr<Fonts>& fonts);
 

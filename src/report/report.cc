@@ -9,7 +9,7 @@ namespace lobefit {
 
 const std::vector<PanelMaker>& PanelMakers() {
   static const std::vector<PanelMaker> makers = {CurvesPanel,    ParametersPanel, QualityPanel, SpherePanel,
-                                                 NdfPanel,       MapsPanel,       EnergyPanel,  BurleyPanel,
+                                                 EnergyPanel,    MapsPanel,       NdfPanel,     BurleyPanel,
                                                  ResidualsPanel, CorrelationPanel};
   return makers;
 }

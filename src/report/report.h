@@ -1,4 +1,4 @@
-// Pictures by which a fit is judged: NAME.report.png.
+// Pictures by which a fit is judged: NAME.report.png and NAME.report.html.
 #pragma once
 
 #include <filesystem>
@@ -23,5 +23,10 @@ struct ReportOptions {
 // cannot be written.
 void WriteReportPng(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
                     const ReportOptions& options = {});
+
+// The same content as one self-contained page, under 3 MB, with live spheres (WebGL 2), slices and parameters; needs no
+// network. The page tests itself when it is opened with "#selftest". Throws as above.
+void WriteReportHtml(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
+                     const ReportOptions& options = {});
 
 }  // namespace lobefit

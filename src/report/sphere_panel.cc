@@ -13,6 +13,7 @@
 #include "lobefit/report/field_image.h"
 #include "lobefit/report/isotropic_lookup.h"
 #include "lobefit/report/panel.h"
+#include "lobefit/report/sphere.h"
 #include "lobefit/report/style.h"
 
 namespace lobefit {
@@ -23,8 +24,7 @@ constexpr int kSkySamples = 40;       // half from the lobe, half by the cosine
 constexpr double kLeastCover = 0.97;  // of the lit sphere that the samples must speak for
 
 using Color = std::array<double, 3>;
-// f_r of one pair of directions; false where it is not known.
-using Brdf = std::function<bool(const Vec3& wi, const Vec3& wo, double* f_r)>;
+using Brdf = BrdfFunction;
 
 struct Frame {
   Vec3 x, y, n;
@@ -48,34 +48,7 @@ bool SphereFrame(int column, int row, int size, Frame* frame) {
   return true;
 }
 
-struct Sphere {
-  int size = 0;
-  std::vector<Color> color;
-  std::vector<std::uint8_t> known;
-};
-
-Sphere UnderLight(const Brdf& brdf, const ChannelColor& to_color, std::size_t channels) {
-  const Vec3 light = Normalized(Vec3{-0.45, 0.6, 0.75}), view = {0, 0, 1};
-  Sphere sphere = {kLightSize, std::vector<Color>(kLightSize * kLightSize, Color{0, 0, 0}),
-                   std::vector<std::uint8_t>(kLightSize * kLightSize, 1)};
-  std::vector<double> f_r(channels);
-  for (int row = 0; row < kLightSize; ++row) {
-    for (int column = 0; column < kLightSize; ++column) {
-      Frame frame;
-      if (!SphereFrame(column, row, kLightSize, &frame)) continue;
-      const Vec3 wi = frame.ToLocal(light), wo = frame.ToLocal(view);
-      if (wi.z <= 0 || wo.z <= 0) continue;
-      const auto pixel = static_cast<std::size_t>(row * kLightSize + column);
-      if (!brdf(wi, wo, f_r.data())) {
-        sphere.known[pixel] = 0;
-        continue;
-      }
-      const Color c = to_color.Linear(f_r.data());
-      for (std::size_t k = 0; k < 3; ++k) sphere.color[pixel][k] = c[k] * wi.z * kPi;
-    }
-  }
-  return sphere;
-}
+using Sphere = LitSphere;
 
 // Radiance of the sky: bright horizon, blue zenith, dark ground, a broad glow around the sun.
 Color Sky(const Vec3& w, bool grey) {
@@ -149,19 +122,6 @@ struct Spheres {
   std::array<double, 2> exposure;
 };
 
-double Exposure(const Sphere& fitted) {
-  std::vector<double> brightest;
-  for (const Color& c : fitted.color) {
-    const double v = std::max({c[0], c[1], c[2]});
-    if (v > 0) brightest.push_back(v);
-  }
-  if (brightest.empty()) return 1;
-  // Highlights may saturate, but not so far that the rest is black.
-  std::vector<double> copy = brightest;
-  const double high = Quantile(&brightest, 0.97), middle = Quantile(&copy, 0.5);
-  return std::min(0.8 / std::max(high, 1e-9), 0.5 / std::max(middle, 1e-9)) * 1.15;
-}
-
 cv::Mat Rendered(const Sphere& sphere, double exposure) {
   cv::Mat picture(sphere.size, sphere.size, CV_8UC4);
   for (int row = 0; row < sphere.size; ++row) {
@@ -197,6 +157,50 @@ void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
 
 }  // namespace
 
+LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
+  const Vec3 light = Normalized(Vec3{-0.45, 0.6, 0.75}), view = {0, 0, 1};
+  const auto pixels = static_cast<std::size_t>(size * size);
+  LitSphere sphere = {size, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
+  std::vector<double> f_r(channels);
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      Frame frame;
+      if (!SphereFrame(column, row, size, &frame)) continue;
+      const Vec3 wi = frame.ToLocal(light), wo = frame.ToLocal(view);
+      if (wi.z <= 0 || wo.z <= 0) continue;
+      const auto pixel = static_cast<std::size_t>(row * size + column);
+      if (!brdf(wi, wo, f_r.data())) {
+        sphere.known[pixel] = 0;
+        continue;
+      }
+      const Color c = to_color.Linear(f_r.data());
+      for (std::size_t k = 0; k < 3; ++k) sphere.color[pixel][k] = c[k] * wi.z * kPi;
+    }
+  }
+  return sphere;
+}
+
+LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int size) {
+  const BrdfFunction fitted = [&data](const Vec3& wi, const Vec3& wo, double* f_r) {
+    data.fitted.Evaluate(wi, wo, f_r);
+    return true;
+  };
+  return LightSphere(fitted, to_color, data.channels(), size);
+}
+
+double SphereExposure(const LitSphere& sphere) {
+  std::vector<double> brightest;
+  for (const Color& c : sphere.color) {
+    const double v = std::max({c[0], c[1], c[2]});
+    if (v > 0) brightest.push_back(v);
+  }
+  if (brightest.empty()) return 1;
+  // Highlights may saturate, but not so far that the rest is black.
+  std::vector<double> copy = brightest;
+  const double high = Quantile(&brightest, 0.97), middle = Quantile(&copy, 0.5);
+  return std::min(0.8 / std::max(high, 1e-9), 0.5 / std::max(middle, 1e-9)) * 1.15;
+}
+
 std::optional<Panel> SpherePanel(const ReportData& data) {
   if (!data.measurement.isotropic || data.material.model.lobes.empty()) return std::nullopt;
   const ChannelColor to_color(data.measurement.channels);
@@ -207,14 +211,14 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     return true;
   };
   const auto spheres = std::make_shared<Spheres>();
-  spheres->sphere[0] = UnderLight(measured, to_color, data.channels());
+  spheres->sphere[0] = LightSphere(measured, to_color, data.channels(), kLightSize);
   const auto known =
       static_cast<double>(std::count(spheres->sphere[0].known.begin(), spheres->sphere[0].known.end(), 1));
   if (known < kLeastCover * static_cast<double>(spheres->sphere[0].known.size())) return std::nullopt;
-  spheres->sphere[1] = UnderLight(fitted, to_color, data.channels());
+  spheres->sphere[1] = LightSphere(fitted, to_color, data.channels(), kLightSize);
   spheres->sphere[2] = UnderSky(measured, data, to_color);
   spheres->sphere[3] = UnderSky(fitted, data, to_color);
-  spheres->exposure = {Exposure(spheres->sphere[0]), Exposure(spheres->sphere[2])};
+  spheres->exposure = {SphereExposure(spheres->sphere[0]), SphereExposure(spheres->sphere[2])};
   Panel panel;
   panel.id = "sphere";
   panel.title = "As it looks";

@@ -1,0 +1,114 @@
+// The page: the panels as pictures, and the same data live.
+#include <memory>
+#include <optional>
+
+#include "lobefit/base/file.h"
+#include "lobefit/base/parallel.h"
+#include "lobefit/base/text.h"
+#include "lobefit/report/html_data.h"
+#include "lobefit/report/page.h"
+#include "lobefit/report/png.h"
+#include "lobefit/report/report.h"
+#include "lobefit/report/web_text.h"
+
+namespace lobefit {
+namespace {
+
+constexpr const char* kCss =
+#include "lobefit/report/page.css.inc"
+    ;
+constexpr const char* kShader =
+#include "lobefit/report/page.glsl.inc"
+    ;
+constexpr const char* kScript =
+#include "lobefit/report/page.js.inc"
+    ;
+
+struct Figure {
+  std::string id, title, png;
+  bool wide = true;
+};
+
+std::vector<Figure> DrawFigures(const ReportData& data, const std::shared_ptr<Fonts>& fonts, std::size_t most_bytes) {
+  std::vector<std::optional<Panel>> panels(PanelMakers().size());
+  ParallelFor(panels.size(), data.threads, [&](std::size_t k) { panels[k] = PanelMakers()[k](data); });
+  std::vector<Figure> figures;
+  // Sharp on dense screens, unless the page would grow too large.
+  for (const double scale : {1.5, 1.0}) {
+    figures.clear();
+    std::size_t bytes = 0;
+    for (const std::optional<Panel>& panel : panels) {
+      if (!panel) continue;
+      const Canvas canvas = DrawPanelAlone(*panel, panel->wide ? 850 : 430, scale, fonts);
+      figures.push_back({panel->id, panel->title, EncodePng(canvas.pixels(), 0), panel->wide});
+      bytes += figures.back().png.size();
+    }
+    if (bytes <= most_bytes) break;
+  }
+  return figures;
+}
+
+std::string FigureHtml(const Figure& figure) {
+  return Join({"<figure id=\"", figure.id, "\"><img alt=\"", HtmlText(figure.title), "\" src=\"data:image/png;base64,",
+               Base64(figure.png), "\"></figure>\n"},
+              "");
+}
+
+}  // namespace
+
+std::string ReportHtml(const ReportData& data, const std::shared_ptr<Fonts>& fonts) {
+  const Material& material = data.material;
+  const std::string file = material.source.file.empty() ? data.measurement.source : material.source.file;
+  const std::string title = HtmlText(std::filesystem::path(file).filename().string());
+  const bool good = material.termination.converged && material.termination.determined;
+  const std::string verdict = !material.termination.converged ? "not converged"
+                              : good                          ? "converged"
+                                                              : "converged, not fully determined";
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  html +=
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
+      "'unsafe-inline'; script-src 'unsafe-inline'\">\n";
+  html +=
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n";
+  html += Join({"<title>", title, " – fit</title>\n<style>", kCss, "</style>\n</head>\n<body>\n", "<header><h1>", title,
+                "</h1><span class=\"chip", good ? "" : " bad", "\">", verdict, "</span></header>\n",
+                "<p class=\"sub\">", HtmlText(ModelWords(material.model)), "</p>\n"},
+               "");
+  html += R"(<main>
+<div class="live">
+<div>
+<section id="sphereSection"><h2>Under a light</h2>
+<canvas id="sphere" tabindex="0" role="img" aria-label="Spheres of the material, measured and fitted, under one light. Arrow keys move the light."></canvas>
+<div class="pair" id="names"><span>measured</span><span>fitted</span></div>
+<p class="note">Drag on a sphere, or use the arrow keys, to move the light. Grey: no measured sample is near.</p></section>
+<p id="noGl" class="note hidden">This browser offers no WebGL 2: the pictures below show the spheres that would be live here.</p>
+<section id="sliceSection"><h2>Slice in the plane of incidence</h2>
+<div class="controls"><label>polar angle <select id="theta"></select></label><label id="phiBox">azimuth <select id="phi"></select></label><button id="scale" type="button">linear scale</button></div>
+<svg id="slice" viewBox="0 0 860 430" tabindex="0" role="img"></svg>
+<div id="hover" aria-live="polite">Point at a measured value, or step through them with the arrow keys.</div></section>
+</div>
+<section><h2>Parameters, live</h2>
+<div id="sliders"></div>
+<div class="controls"><button id="reset" type="button">Back to the fit</button></div>
+<p class="note">Sliders move the sphere and the curve of the slice; the pictures below stay with the fit.</p></section>
+</div>
+<h2>The fit</h2>
+<div class="panels">
+)";
+  std::string wide, narrow;
+  for (const Figure& figure : DrawFigures(data, fonts, 1500000)) (figure.wide ? wide : narrow) += FigureHtml(figure);
+  html += Join({"<div class=\"stack\">\n", wide, "</div>\n<div class=\"stack\">\n", narrow, "</div>\n</div>\n</main>\n",
+                "<script id=\"data\" type=\"application/json\">", DataJson(data), "</script>\n",
+                "<script id=\"shader\" type=\"text/plain\">", kShader, "</script>\n<script>", kScript,
+                "</script>\n</body>\n</html>\n"},
+               "");
+  return html;
+}
+
+void WriteReportHtml(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
+                     const ReportOptions& options) {
+  const ReportData data(material, measurement, options.threads);
+  WriteFileAtomically(path, ReportHtml(data, std::make_shared<Fonts>(options.font_folders)));
+}
+
+}  // namespace lobefit
