@@ -8,6 +8,7 @@
 // light is at azimuth 0, so phi_o = azimuth - 90 degrees.
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv_header.h"
@@ -15,7 +16,9 @@
 #include "lobefit/io/formats.h"
 #include "lobefit/io/options.h"
 #include "lobefit/io/place.h"
+#include "lobefit/measurement/noise.h"
 #include "lobefit/measurement/pair_index.h"
+#include "lobefit/measurement/repeats.h"
 
 namespace lobefit {
 namespace {
@@ -123,15 +126,30 @@ class CsvReader {
 
  private:
   Measurement Finish(MeasurementBuilder* builder, const Measurement& notes) const {
-    Measurement measurement = builder->Finish();
-    measurement.conventions = notes.conventions;
-    measurement.remarks = notes.remarks;
-    measurement.isotropic = layout_.delta_phi != kNoColumn && layout_.phi_i == kNoColumn;
-    double sum = 0;
-    for (const double weight : measurement.samples.weight) sum += weight;
-    for (double& weight : measurement.samples.weight) {
-      weight *= static_cast<double>(measurement.samples.weight.size()) / sum;
+    std::vector<std::string> remarks = notes.remarks;
+    Samples& rows = builder->measurement().samples;
+    if (options_.repeated == RepeatedRows::kMean) {
+      // The spread of the repetitions stands for the stated uncertainty.
+      if (HasSigmas()) rows.weight.clear();
+      const Repeats repeats = MergeRepeated(&builder->measurement());
+      remarks.push_back(std::to_string(repeats.samples) + " repeated rows were merged to " +
+                        std::to_string(repeats.pairs) + "; a row scatters by " +
+                        FormatDouble(std::round(1000 * repeats.relative_spread) / 10) + " % of its mean");
     }
+    Measurement measurement = builder->Finish();
+    if (HasSigmas() && options_.repeated == RepeatedRows::kFirst) {
+      const std::vector<double> sigma = std::exchange(measurement.samples.weight, {});
+      WeighBySigma(sigma, &measurement);
+    }
+    if (measurement.set_aside[SetAsideReason::kDuplicate] > 0 && layout_.wavelength == kNoColumn) {
+      remarks.emplace_back("directions occur again; --repeated mean averages their rows instead of keeping the first");
+    }
+    measurement.conventions = notes.conventions;
+    measurement.conventions["repeated"] =
+        options_.repeated == RepeatedRows::kMean ? "mean (option)" : "first (default)";
+    measurement.remarks = std::move(remarks);
+    measurement.isotropic = layout_.delta_phi != kNoColumn && layout_.phi_i == kNoColumn;
+    ScaleToMeanOne(&measurement.samples.weight);
     return measurement;
   }
 
@@ -325,11 +343,11 @@ class CsvReader {
     }
   }
 
-  bool HasWeights() const {
-    return layout_.weight != kNoColumn || layout_.sigma != kNoColumn || !layout_.channel_sigmas.empty();
-  }
+  bool HasSigmas() const { return layout_.sigma != kNoColumn || !layout_.channel_sigmas.empty(); }
+  bool HasWeights() const { return layout_.weight != kNoColumn || HasSigmas(); }
 
-  // False where the file gives the row no weight.
+  // The row's weight, or the standard deviation of its f_r (root mean square over the channels), which takes the
+  // weight's place until all rows are known. False where the file gives the row no weight.
   bool WeightOfRow(std::size_t line, double factor, double* weight) const {
     if (!HasWeights()) return true;
     if (layout_.weight != kNoColumn) {
@@ -352,7 +370,7 @@ class CsvReader {
     if (layout_.sigma != kNoColumn) add(layout_.sigma);
     for (const std::size_t column : layout_.channel_sigmas) add(column);
     const double count = layout_.sigma != kNoColumn ? 1.0 : static_cast<double>(layout_.channel_sigmas.size());
-    *weight = count / (variance * factor * factor);
+    *weight = factor * std::sqrt(variance / count);
     return true;
   }
 

@@ -38,6 +38,8 @@ constexpr std::array<Word<IntervalKind>, 2> kIntervals = {
     {{"bounds", IntervalKind::kBounds}, {"offsets", IntervalKind::kOffsets}}};
 constexpr std::array<Word<MountainAzimuth>, 2> kMountainAzimuths = {
     {{"file", MountainAzimuth::kFile}, {"up", MountainAzimuth::kUp}}};
+constexpr std::array<Word<RepeatedRows>, 2> kRepeated = {
+    {{"first", RepeatedRows::kFirst}, {"mean", RepeatedRows::kMean}}};
 constexpr std::array<Word<UtiaEncoding>, 2> kUtiaEncodings = {
     {{"raw", UtiaEncoding::kRaw}, {"srgb", UtiaEncoding::kSrgb}}};
 constexpr std::array<Word<ExrAxes>, 4> kExrAxes = {{{"slice", ExrAxes::kSlice},
@@ -116,6 +118,10 @@ const std::vector<ReadOptionEntry>& ReadOptionTable() {
   using Options = ReadOptions*;
   using Word = const std::string&;
   static const std::vector<ReadOptionEntry> table = {
+      {"noise-floor", "SIGMA", "standard deviation of the reading f cos(theta_i), becomes weights (all formats)",
+       [](Options o, Word w) { o->noise_floor = RequireNumber("noise-floor", w, 1e-300, 1e300); }},
+      {"repeated", "first|mean", "what becomes of rows with the same directions (csv)",
+       [](Options o, Word w) { o->repeated = Require(kRepeated, "repeated", w); }},
       {"angle-unit", "deg|rad", "unit of the angles (csv, astm)",
        [](Options o, Word w) { o->angle_unit = Require(kAngleUnits, "angle-unit", w); }},
       {"value-kind", "f|f-cos-o|f-cos-i|pi-f|intensity|pi-f-cos-o", "what the values are (csv, alta, astm, exr)",

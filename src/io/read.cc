@@ -1,5 +1,6 @@
 #include "lobefit/io/read.h"
 
+#include <cstdio>
 #include <future>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/formats.h"
+#include "lobefit/measurement/noise.h"
 
 namespace lobefit {
 namespace {
@@ -18,6 +20,24 @@ std::string KnownFormats() {
   std::vector<std::string> lines;
   for (const Format& format : Formats()) lines.push_back(std::string(format.name) + " (" + format.description + ")");
   return Join(lines, "; ");
+}
+
+void TreatNoise(const ReadOptions& options, Measurement* measurement) {
+  if (options.noise_floor) {
+    WeighByNoiseFloor(*options.noise_floor, measurement);
+    measurement->conventions["noise-floor"] = FormatDouble(*options.noise_floor) + " (option)";
+    return;
+  }
+  // Tables with cells of known size are computed from readings; rows of a goniometer are readings.
+  if (!measurement->samples.solid_angle.empty()) return;
+  const std::optional<RectifiedNoise> noise = FindRectifiedNoise(*measurement);
+  if (!noise) return;
+  char floor[32];
+  std::snprintf(floor, sizeof(floor), "%.2g", noise->floor);
+  measurement->remarks.push_back(
+      "rectified noise: where readings f cos(theta_i) are near " + std::string(floor) +
+      " their scatter is as large as they are, but none is negative; " + std::to_string(noise->samples_below) +
+      " samples are below three times that. --noise-floor " + floor + " lets them weigh less");
 }
 
 }  // namespace
@@ -56,6 +76,7 @@ Measurement ReadMeasurement(const std::filesystem::path& path, const ReadOptions
                      (reasons.empty() ? std::string(": it has no data rows") : ": " + Join(reasons)) +
                      "; check that the right file was named and that its units are stated");
   }
+  TreatNoise(options, &measurement);
   return measurement;
 }
 

@@ -27,6 +27,8 @@ enum class XmlNaming { kWindow, kPlain };
 enum class IntervalKind { kBounds, kOffsets };
 // pab Mountain: azimuths as in the file, or turned so that the "up" direction of the header is +y, as Radiance does.
 enum class MountainAzimuth { kFile, kUp };
+// What becomes of rows whose pair of directions came before.
+enum class RepeatedRows { kFirst, kMean };
 // Numbers of UTIA files: f_r as they are, or f_r / 100 behind an sRGB curve (what some readers take them for).
 enum class UtiaEncoding { kRaw, kSrgb };
 // What the pixels of an EXR image are. kSlice: theta_h to the right, theta_d, both over 90 degrees, phi_d fixed;
@@ -43,6 +45,11 @@ enum class ExrRows { kUp, kDown };
 // says. Every choice that a reader makes is echoed in Measurement::conventions under the option's name on the command
 // line.
 struct ReadOptions {
+  // --noise-floor SIGMA (all): standard deviation of the reading f_r cos(theta_i), 1/sr; becomes weights.
+  std::optional<double> noise_floor;
+  // --repeated first|mean (csv): of a pair of directions that occurs again the first row is kept, or the mean of all
+  // with their spread as weight.
+  RepeatedRows repeated = RepeatedRows::kFirst;
   std::optional<AngleUnit> angle_unit;  // --angle-unit deg|rad          (csv, astm)
   std::optional<ValueKind>
       value_kind;  // --value-kind f|f-cos-o|f-cos-i|pi-f|intensity|pi-f-cos-o (csv, alta, astm, exr)

@@ -167,8 +167,33 @@ TEST(Csv, UncertaintiesBecomeWeights) {
   const Measurement weight = Read("theta_i,theta_o,f,weight\n10,20,1,1\n10,30,1,3\n10,40,1,0\n");
   EXPECT_EQ(weight.samples.weight, (std::vector<double>{0.5, 1.5}));
   EXPECT_EQ(weight.set_aside[SetAsideReason::kFlagged], 1U);
-  const Measurement sigma = Read("theta_i,theta_o,f,sigma\n10,20,1,0.1\n10,30,1,0.2\n");
-  EXPECT_NEAR(sigma.samples.weight[0] / sigma.samples.weight[1], 4, 1e-12);
+  // The inverse variance above the median: 0.1, 0.1, 0.3 give 1/2, 1/2, 1/10 up to a factor.
+  const Measurement sigma = Read("theta_i,theta_o,f,sigma\n10,20,1,0.1\n10,30,1,0.1\n10,40,1,0.3\n");
+  EXPECT_NEAR(sigma.samples.weight[0] / sigma.samples.weight[2], 5, 1e-9);
+  EXPECT_NEAR(sigma.samples.weight[0] + sigma.samples.weight[1] + sigma.samples.weight[2], 3, 1e-12);
+}
+
+TEST(Csv, RepeatedRowsAreMergedWhenAsked) {
+  const std::string text = "theta_i,theta_o,f\n10,20,1\n10,30,4\n10,20,3\n10,40,5\n";
+  EXPECT_EQ(F(Read(text), 0), 1);
+  ReadOptions options;
+  options.repeated = RepeatedRows::kMean;
+  const Measurement m = Read(text, options);
+  ASSERT_EQ(m.samples.size(), 3U);
+  EXPECT_EQ(F(m, 0), 2);
+  EXPECT_EQ(m.set_aside[SetAsideReason::kDuplicate], 0U);
+  EXPECT_EQ(m.samples.weight.size(), 3U);
+  // Standard deviation of 1 and 3 about 2: sqrt(2) / 2 of the mean.
+  EXPECT_EQ(m.remarks[0], "2 repeated rows were merged to 1; a row scatters by 70.7 % of its mean");
+}
+
+TEST(Csv, ANoiseFloorBecomesWeights) {
+  ReadOptions options;
+  options.noise_floor = 0.01;
+  const Measurement m = Read("theta_i,theta_o,f\n10,20,0.001\n10,30,100\n10,40,0.002\n", options);
+  // A bright reading is certain in ln(1 + f cos), a dim one is not.
+  EXPECT_GT(m.samples.weight[1], 1.9 * m.samples.weight[0]);
+  EXPECT_EQ(m.conventions.at("noise-floor"), "0.01 (option)");
 }
 
 TEST(ClassifyColumn, KnowsTheSpellingsInUse) {

@@ -89,6 +89,16 @@ TEST(RealData, ScatterometerPeaksInTheMirrorDirection) {
   EXPECT_GT(RadiansToDegrees(PolarAngle(m.samples.wo(at))), 65);
 }
 
+// data/README.md: the lacquer's file has rectified noise near its floor.
+TEST(RealData, RectifiedNoiseOfTheLacquerIsRecognised) {
+  const auto path = kData / "mwir_metals" / "reference_lacquer_rough.csv";
+  SKIP_WITHOUT(path);
+  const Measurement m = ReadMeasurement(path);
+  bool found = false;
+  for (const std::string& remark : m.remarks) found = found || remark.starts_with("rectified noise");
+  EXPECT_TRUE(found);
+}
+
 TEST(RealData, PtfeWavelengthsBecomeChannels) {
   const auto path = kData / "nist_ptfe" / "PTFE.data.csv";
   SKIP_WITHOUT(path);

@@ -1,0 +1,118 @@
+#include "lobefit/measurement/noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lobefit {
+namespace {
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double MeanOfChannels(const Samples& samples, std::size_t i) {
+  double sum = 0;
+  for (const std::vector<double>& values : samples.values) sum += std::max(0.0, values[i]);
+  return sum / static_cast<double>(samples.values.size());
+}
+
+// A stretch of a scan. White noise of standard deviation 1 has second differences of variance 6, most of them of
+// another sign than the one before; a lobe, however steep, has second differences that keep their sign for long.
+struct Stretch {
+  double mean, noise, mean_square;
+  int alternations;
+};
+Stretch DescribeStretch(const double* values, std::size_t count) {
+  Stretch stretch = {};
+  const double n = static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    stretch.mean += values[i] / n;
+    stretch.mean_square += values[i] * values[i] / n;
+  }
+  double squares = 0, last = 0;
+  for (std::size_t i = 0; i + 2 < count; ++i) {
+    const double second = values[i] - 2 * values[i + 1] + values[i + 2];
+    squares += second * second;
+    if (second * last < 0) ++stretch.alternations;
+    last = second;
+  }
+  stretch.noise = std::sqrt(squares / (n - 2) / 6);
+  return stretch;
+}
+
+}  // namespace
+
+void WeighBySigma(const std::vector<double>& sigma, Measurement* measurement) {
+  Samples& samples = measurement->samples;
+  if (samples.size() == 0) return;
+  std::vector<double> variance(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double reading = MeanOfChannels(samples, i) * samples.wi_z[i];
+    const double deviation = sigma[i] * samples.wi_z[i] / (1 + reading);
+    variance[i] = deviation * deviation;
+  }
+  const double median = Median(variance);
+  // With more than half of the samples free of uncertainty there is nothing to weigh by but the largest.
+  const double floor = median > 0 ? median : *std::max_element(variance.begin(), variance.end());
+  if (!(floor > 0)) return;
+  if (samples.weight.empty()) samples.weight.assign(samples.size(), 1.0);
+  double sum = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.weight[i] *= floor / (variance[i] + floor);
+    sum += samples.weight[i];
+  }
+  for (double& weight : samples.weight) weight *= static_cast<double>(samples.size()) / sum;
+}
+
+void WeighByNoiseFloor(double floor, Measurement* measurement) {
+  std::vector<double> sigma;
+  for (const double cos_i : measurement->samples.wi_z) sigma.push_back(floor / cos_i);
+  WeighBySigma(sigma, measurement);
+}
+
+std::optional<RectifiedNoise> FindRectifiedNoise(const Measurement& measurement) {
+  // Half a normal distribution has a scatter of 0.76 of its mean; below a third the sign would not be lost.
+  constexpr double kLeastRatio = 0.35;
+  constexpr double kNearby = 5 * kPi / 180;
+  constexpr std::size_t kLength = 8, kLeastStretches = 3;
+  constexpr int kLeastAlternations = 3;
+  const Samples& samples = measurement.samples;
+  if (samples.size() < kLength) return std::nullopt;
+  std::vector<double> readings;
+  double largest = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double reading = samples.values[0][i] * samples.wi_z[i];
+    if (reading < 0) return std::nullopt;  // the sign was kept
+    readings.push_back(reading);
+    largest = std::max(largest, reading);
+  }
+  std::vector<double> mean_squares;
+  std::size_t begin = 0;
+  while (begin + kLength <= samples.size()) {
+    std::size_t end = begin + 1;
+    while (end < begin + kLength && Norm(samples.wi(end) - samples.wi(end - 1)) < kNearby &&
+           Norm(samples.wo(end) - samples.wo(end - 1)) < kNearby) {
+      ++end;
+    }
+    if (end < begin + kLength) {
+      begin = end;
+      continue;
+    }
+    const Stretch stretch = DescribeStretch(&readings[begin], kLength);
+    if (stretch.noise > kLeastRatio * stretch.mean && stretch.alternations >= kLeastAlternations && stretch.mean > 0 &&
+        stretch.mean < 0.02 * largest) {
+      mean_squares.push_back(stretch.mean_square);
+    }
+    begin += kLength / 2;
+  }
+  if (mean_squares.size() < kLeastStretches) return std::nullopt;
+  RectifiedNoise noise;
+  noise.floor = std::sqrt(Median(mean_squares));
+  noise.samples_below = static_cast<std::size_t>(
+      std::count_if(readings.begin(), readings.end(), [&](double reading) { return reading < 3 * noise.floor; }));
+  return noise;
+}
+
+}  // namespace lobefit
