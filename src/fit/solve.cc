@@ -10,11 +10,23 @@
 namespace lobefit {
 namespace {
 
+std::vector<double> Clamped(const Layout& layout, const double* u) {
+  std::vector<double> clamped(u, u + layout.size());
+  for (std::size_t i = 0; i < clamped.size(); ++i) {
+    clamped[i] = std::clamp(clamped[i], layout.coordinates()[i].low, layout.coordinates()[i].high);
+  }
+  return clamped;
+}
+
 // All samples as n + 1 residuals (c, sqrt(|r|^2 - |c|^2)) with Jacobian (R; 0), where R^T R = J^T J and R^T c = J^T r:
 // the same cost, the same Gauss-Newton matrix and the same gradient as the Jacobian of all samples, so the solver takes
 // the same steps. R is sqrt(Lambda) V^T of the eigen-decomposition of J^T J scaled to a unit diagonal; unlike a
 // Cholesky factor it exists for a singular matrix too, and keeps directions that the data do not determine at exactly
 // zero.
+//
+// Bounds. The model is evaluated at the nearest point within them, and a coordinate beyond its bound has a zero column:
+// the descent goes on in the others at full speed. Ceres' own bounds add a line search to every iteration: 61
+// iterations and 1.5 s on a full table with one albedo at zero.
 class StreamedCost : public ceres::CostFunction {
  public:
   StreamedCost(const Problem& problem, const Layout& layout, ThreadPool* pool)
@@ -26,17 +38,24 @@ class StreamedCost : public ceres::CostFunction {
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const auto n = static_cast<Eigen::Index>(layout_.size());
+    const std::vector<double> u = Clamped(layout_, parameters[0]);
     Eigen::Map<Eigen::VectorXd> r(residuals, n + 1);
     if (jacobians == nullptr || jacobians[0] == nullptr) {
-      const double sum = problem_.Sum(layout_.ToKernel(parameters[0]), false, pool_).sum_rho;
+      const double sum = problem_.Sum(layout_.ToKernel(u.data()), false, pool_).sum_rho;
       r.setZero();
       r(n) = std::sqrt(sum);
       return std::isfinite(sum);
     }
     Eigen::MatrixXd hessian;
     Eigen::VectorXd gradient;
-    const double sum = 2 * Linearise(problem_, layout_, parameters[0], pool_, &hessian, &gradient);
+    const double sum = 2 * Linearise(problem_, layout_, u.data(), pool_, &hessian, &gradient);
     if (!std::isfinite(sum) || !hessian.allFinite() || !gradient.allFinite()) return false;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (parameters[0][i] == u[static_cast<std::size_t>(i)]) continue;
+      hessian.row(i).setZero();
+      hessian.col(i).setZero();
+      gradient(i) = 0;
+    }
     const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0 ? x : 1.0; });
     const Eigen::VectorXd inverse = scale.cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * hessian * inverse.asDiagonal());
@@ -73,6 +92,29 @@ double Linearise(const Problem& problem, const Layout& layout, const double* u, 
   return sums.sum_rho / 2;
 }
 
+namespace {
+
+// True where the cost falls from a bound inwards: the coordinate was held there too early.
+bool WantsInside(const Problem& problem, const Layout& layout, const std::vector<double>& u, ThreadPool* pool) {
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  bool any_at_bound = false;
+  for (std::size_t i = 0; i < u.size(); ++i)
+    any_at_bound = any_at_bound || u[i] == layout.coordinates()[i].low || u[i] == layout.coordinates()[i].high;
+  if (!any_at_bound) return false;
+  const double cost = Linearise(problem, layout, u.data(), pool, &hessian, &gradient);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    // A gradient J^T r smaller than 1e-9 |J_k| |r| is rounding.
+    const double noise = 1e-9 * std::sqrt(hessian(k, k) * 2 * cost);
+    if (u[i] == layout.coordinates()[i].low && gradient(k) < -noise) return true;
+    if (u[i] == layout.coordinates()[i].high && gradient(k) > noise) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 Solution Solve(const Problem& problem, const Layout& layout, const std::vector<double>& start,
                const SolveOptions& options, ThreadPool* pool) {
   SilenceLogging();
@@ -83,24 +125,28 @@ Solution Solve(const Problem& problem, const Layout& layout, const std::vector<d
   StreamedCost cost(problem, layout, pool);
   ceres::Problem ceres_problem(problem_options);
   ceres_problem.AddResidualBlock(&cost, nullptr, solution.u.data());
-  for (std::size_t i = 0; i < layout.size(); ++i) {
-    ceres_problem.SetParameterLowerBound(solution.u.data(), static_cast<int>(i), layout.coordinates()[i].low);
-    ceres_problem.SetParameterUpperBound(solution.u.data(), static_cast<int>(i), layout.coordinates()[i].high);
-  }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.logging_type = ceres::SILENT;
-  solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
   solver.parameter_tolerance = 1e-13;
   solver.gradient_tolerance = 1e-16;
   solver.num_threads = 1;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &ceres_problem, &summary);
-  solution.cost = summary.final_cost;
-  solution.converged = summary.termination_type == ceres::CONVERGENCE;
-  solution.iterations = static_cast<int>(summary.iterations.size());
-  solution.message = summary.message;
+  // A descent may leave a coordinate at a bound that it would rather leave again: then it goes on from there.
+  constexpr int kMaxRounds = 8;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    solver.max_num_iterations = options.max_iterations - solution.iterations;
+    if (solver.max_num_iterations <= 0) break;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &ceres_problem, &summary);
+    solution.u = Clamped(layout, solution.u.data());
+    solution.cost = summary.final_cost;
+    solution.converged = summary.termination_type == ceres::CONVERGENCE;
+    solution.iterations += static_cast<int>(summary.iterations.size());
+    solution.message = summary.message;
+    if (!solution.converged || !WantsInside(problem, layout, solution.u, pool)) break;
+    solution.converged = false;
+  }
   return solution;
 }
 
