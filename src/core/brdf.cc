@@ -19,7 +19,7 @@ struct Masked {
 Masked MaskingOverCosine(const EllipsoidFrame& frame, const Vec3& u, G1Kind kind, bool derivatives) {
   Masked g;
   const double sigma = frame.Sigma(u, derivatives ? g.gradient : nullptr, derivatives ? &g.du : nullptr);
-  g.clamped = u.z > sigma;
+  g.clamped = frame.Clamped(u);
   if (g.clamped && kind == G1Kind::kClamped) {
     g.value = 1.0 / u.z;
     std::fill(g.gradient, g.gradient + kShape, 0.0);

@@ -103,6 +103,15 @@ double EllipsoidFrame::Lambda(const Vec3& u, double* gradient) const {
   return (0.5 * cc / (std::sqrt(d * d + cc) + d) + level) / (norm2_an_ * u.z);
 }
 
+// u.z > sigma  <=>  s < d + 2 e, e = nn u.z - d = -An.A(u_x, u_y, 0)  <=>  e > 0 and cc < 4 e nn u.z.
+bool EllipsoidFrame::Clamped(const Vec3& u) const {
+  const Vec3 across = rotation_ * Vec3{u.x, u.y, 0.0};
+  const double e = -FormOfPerpendicular(ShapeWeights(alpha_x_, alpha_y_), across, turn_axis_[2]);
+  if (!(e > 0)) return false;
+  const Vec3 c = rotation_ * Vec3{u.y, -u.x, 0.0};
+  return Form(CofactorWeights(alpha_x_, alpha_y_), c, c) < 4.0 * e * norm2_an_ * u.z;
+}
+
 double EllipsoidD(const Ellipsoid& ellipsoid, const Vec3& wm, double* gradient, Vec3* dD_dwm) {
   return EllipsoidFrame(ellipsoid).D(wm, gradient, dD_dwm);
 }
@@ -122,9 +131,9 @@ double EllipsoidG1Unclamped(const Ellipsoid& ellipsoid, const Vec3& u, double* g
 
 double EllipsoidG1(const Ellipsoid& ellipsoid, const Vec3& u, double* gradient, bool* clamped) {
   const double value = EllipsoidG1Unclamped(ellipsoid, u, gradient);
-  const bool is_clamped = value > 1.0;
+  const bool is_clamped = u.z > 0 ? EllipsoidFrame(ellipsoid).Clamped(u) : value > 1.0;
   if (clamped != nullptr) *clamped = is_clamped;
-  if (!is_clamped) return value;
+  if (!is_clamped) return std::min(1.0, value);
   if (gradient != nullptr) std::fill(gradient, gradient + kEllipsoidParameters, 0.0);
   return 1.0;
 }

@@ -62,6 +62,9 @@ class EllipsoidFrame {
   // sigma(u) / u.z - 1 for u.z > 0 [Heitz' Lambda in the convention of Walter eq 6], without the subtraction: small
   // near the normal, and of the right sign there. Negative where the masking is clamped.
   double Lambda(const Vec3& u, double* gradient = nullptr) const;
+  // Whether u.z > sigma(u), for u.z > 0: the clamp of G1. Decided without the rounding of sigma, which would be wrong
+  // where the two nearly agree (a lobe that hardly leans, seen near its normal).
+  bool Clamped(const Vec3& u) const;
   const Mat3& rotation() const { return rotation_; }
   // |A n|^2 = M33 and its gradient.
   double norm2_an() const { return norm2_an_; }

@@ -34,11 +34,11 @@ Quantity OffCenterDQuantity() {
   return q;
 }
 
-// c, q, a with the direction normalised and c summed in extended precision: the terms of c cancel where the mean
-// surface is seen edge-on.
-ProjectedSlopes ProjectedAt(const double* in) {
+// c, q, a of the slopes `in` and the direction `u`, normalised and summed in extended precision: the terms of c cancel
+// where the mean surface is seen edge-on, and Beckmann's tail hangs on the last digits of a.
+ProjectedSlopes ExtendedProjection(const double* in, const double* u) {
   using Real = long double;
-  const Real x = in[6], y = in[7], z = in[8], length = std::sqrt(x * x + y * y + z * z);
+  const Real x = u[0], y = u[1], z = u[2], length = std::sqrt(x * x + y * y + z * z);
   const Real c = (z - in[4] * x - in[5] * y) / length, A = in[1] * x / length, B = in[2] * y / length;
   const Real q = ((A + B) * (A + B) * (1 + Real{in[3]}) + (A - B) * (A - B) * (1 - Real{in[3]})) / 2;
   return {static_cast<double>(c), static_cast<double>(q), static_cast<double>(c / std::sqrt(q))};
@@ -61,7 +61,7 @@ Quantity SmithLambdaQuantity() {
   q.evaluate = [](const double* in, double* out) {
     const SlopeDistribution s = SlopesAt(in);
     const Vec3 u = DirectionAt(in + 6);
-    const ProjectedSlopes p = ProjectedAt(in);
+    const ProjectedSlopes p = ExtendedProjection(in, in + 6);
     bool clamped = false;
     out[0] = p.c;
     out[1] = p.q;
@@ -105,8 +105,10 @@ Quantity G2Quantity() {
     const SlopeDistribution s = SlopesAt(in);
     const Vec3 o = DirectionAt(in + 6), i = DirectionAt(in + 9);
     double dLambda_o[kSlopeParameters], dLambda_i[kSlopeParameters];
-    out[0] = SmithLambda(s, o, dLambda_o);
-    out[1] = SmithLambda(s, i, dLambda_i);
+    SmithLambda(s, o, dLambda_o);
+    SmithLambda(s, i, dLambda_i);
+    out[0] = SmithLambdaOfA(s.kind, ExtendedProjection(in, in + 6).a);
+    out[1] = SmithLambdaOfA(s.kind, ExtendedProjection(in, in + 9).a);
     out[2] = AzimuthDifference(o, i);
     out[3] = VanGinnekenLambda(out[2]);
     for (int kind = 0; kind < 4; ++kind) {

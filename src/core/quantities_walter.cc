@@ -1,5 +1,6 @@
 // [Walter] the ellipsoid distribution, its BRDF and its visible normals; also the conductor's Fresnel reflectance.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "lobefit/core/brdf.h"
@@ -8,6 +9,7 @@
 #include "lobefit/core/off_center.h"
 #include "lobefit/core/quantity_columns.h"
 #include "lobefit/core/vndf.h"
+#include "lobefit/core/weighted_form.h"
 
 namespace lobefit {
 namespace {
@@ -89,6 +91,27 @@ Quantity LuneQuantity() {
   return q;
 }
 
+// Mean slope and Q^-1 as off_center.cc has them, in extended precision: each entry can be a small difference.
+void ExtendedOffCenter(const double* in, double* out) {
+  using Real = long double;
+  const Real p[5] = {in[0], in[1], in[2], in[3], in[4]};
+  const Mat3T<Real> columns = Transposed(EllipsoidRotation(p));
+  const Vec3T<Real>&r1 = columns.row[0], &r2 = columns.row[1], &n = columns.row[2];
+  const FormWeightsT<Real> shape = ShapeWeights(p[0], p[1]), cofactor = CofactorWeights(p[0], p[1]);
+  const Real m33 = Form(shape, n, n), square = m33 * m33;
+  const Real q11 = Form(cofactor, r2, r2) / square, q22 = Form(cofactor, r1, r1) / square;
+  const Real q12 = -FormOfPerpendicular(cofactor, r1, r2) / square;
+  const Real values[8] = {-FormOfPerpendicular(shape, r1, n) / m33,
+                          -FormOfPerpendicular(shape, r2, n) / m33,
+                          q11,
+                          q12,
+                          q22,
+                          std::sqrt(q11),
+                          std::sqrt(q22),
+                          q12 / std::sqrt(q11 * q22)};
+  for (int k = 0; k < 8; ++k) out[k] = static_cast<double>(values[k]);
+}
+
 Quantity ToOffCenterQuantity() {
   Quantity q = OfEllipsoid("offcenter_from_ellipsoid", "the ellipsoid as an off-centre, correlated GGX of slopes",
                            "[Heitz] eq 88, 95; [Loubet] sec 2");
@@ -103,10 +126,8 @@ Quantity ToOffCenterQuantity() {
                {"slope_r", "1", "q12 / sqrt(q11 q22)"}};
   for (std::size_t i = 0; i < 5; ++i) AddDerivatives(&q, q.results[i].name, "1", parameters);
   q.evaluate = [](const double* in, double* out) {
-    const OffCenter o = OffCenterFromEllipsoid(EllipsoidAt(in), out + 8);
-    const SlopeDistribution s = SlopesFromOffCenter(SlopeKind::kGgx, o);
-    const double values[8] = {o.slope_x, o.slope_y, o.q11, o.q12, o.q22, s.alpha_x, s.alpha_y, s.r};
-    std::copy(values, values + 8, out);
+    OffCenterFromEllipsoid(EllipsoidAt(in), out + 8);
+    ExtendedOffCenter(in, out);
   };
   return q;
 }

@@ -141,12 +141,15 @@ double SmithG1(const SlopeDistribution& distribution, const Vec3& u, double* gra
 double SmithG1Clamped(const SlopeDistribution& distribution, const Vec3& u, double* gradient, bool* clamped) {
   const double sigma = SmithSigma(distribution, u, gradient);
   const double value = std::abs(u.z) / sigma;
-  const bool is_clamped = value > 1.0;
+  // u.z > sigma = c (1 + Lambda) without the rounding of sigma, which would be wrong where Lambda is tiny.
+  const double c = ProjectSlopes(distribution, u).c;
+  const double behind = distribution.slope_x * u.x + distribution.slope_y * u.y;  // u.z - c
+  const bool is_clamped = c > 0 && u.z > 0 ? behind > c * SmithLambda(distribution, u) : value > 1.0;
   if (clamped != nullptr) *clamped = is_clamped;
   if (gradient != nullptr) {
     for (int k = 0; k < kSlopeParameters; ++k) gradient[k] *= is_clamped ? 0.0 : -value / sigma;
   }
-  return is_clamped ? 1.0 : value;
+  return is_clamped ? 1.0 : std::min(1.0, value);
 }
 
 }  // namespace lobefit

@@ -10,13 +10,16 @@
 
 namespace lobefit {
 
-struct FormWeights {
-  double x, y, z;
-  double z_minus_y, x_minus_z, y_minus_x;
+template <class T>
+struct FormWeightsT {
+  T x, y, z;
+  T z_minus_y, x_minus_z, y_minus_x;
 };
+using FormWeights = FormWeightsT<double>;
 
 // Weights (ax^2, ay^2, 1) of A^T A, A = S R [Walter eq 2].
-inline FormWeights ShapeWeights(double alpha_x, double alpha_y) {
+template <class T>
+FormWeightsT<T> ShapeWeights(const T& alpha_x, const T& alpha_y) {
   return {alpha_x * alpha_x,
           alpha_y * alpha_y,
           1.0,
@@ -26,8 +29,9 @@ inline FormWeights ShapeWeights(double alpha_x, double alpha_y) {
 }
 
 // Weights (ay^2, ax^2, ax^2 ay^2): squares of the cofactors of S = diag(ax, ay, 1), for |S p x S q|^2.
-inline FormWeights CofactorWeights(double alpha_x, double alpha_y) {
-  const double xx = alpha_x * alpha_x, yy = alpha_y * alpha_y;
+template <class T>
+FormWeightsT<T> CofactorWeights(const T& alpha_x, const T& alpha_y) {
+  const T xx = alpha_x * alpha_x, yy = alpha_y * alpha_y;
   return {yy,
           xx,
           xx * yy,
@@ -37,8 +41,9 @@ inline FormWeights CofactorWeights(double alpha_x, double alpha_y) {
 }
 
 // Weights (1/ax^2, 1/ay^2, 1) of the inverse matrix, for |A^-T m|^2.
-inline FormWeights InverseWeights(double alpha_x, double alpha_y) {
-  const double xx = 1.0 / (alpha_x * alpha_x), yy = 1.0 / (alpha_y * alpha_y);
+template <class T>
+FormWeightsT<T> InverseWeights(const T& alpha_x, const T& alpha_y) {
+  const T xx = T(1.0) / (alpha_x * alpha_x), yy = T(1.0) / (alpha_y * alpha_y);
   return {xx,
           yy,
           1.0,
@@ -47,22 +52,24 @@ inline FormWeights InverseWeights(double alpha_x, double alpha_y) {
           (alpha_x - alpha_y) * (alpha_x + alpha_y) * xx * yy};
 }
 
-inline double Form(const FormWeights& w, const Vec3& p, const Vec3& q) {
+template <class T>
+T Form(const FormWeightsT<T>& w, const Vec3T<T>& p, const Vec3T<T>& q) {
   return w.x * p.x * q.x + w.y * p.y * q.y + w.z * p.z * q.z;
 }
 
 // The same for p perpendicular to q, where a multiple of p.q = 0 may be taken away: of the four forms that do so
 // without a new subtraction of weights the one with the smallest terms. It keeps its digits where the weights are
 // nearly equal.
-inline double FormOfPerpendicular(const FormWeights& w, const Vec3& p, const Vec3& q) {
-  const double x = p.x * q.x, y = p.y * q.y, z = p.z * q.z;
-  const double forms[4][3] = {{w.x * x, w.y * y, w.z * z},
-                              {w.x_minus_z * x, -w.z_minus_y * y, 0.0},
-                              {-w.y_minus_x * x, w.z_minus_y * z, 0.0},
-                              {w.y_minus_x * y, -w.x_minus_z * z, 0.0}};
-  double best = HUGE_VAL, value = 0.0;
+template <class T>
+T FormOfPerpendicular(const FormWeightsT<T>& w, const Vec3T<T>& p, const Vec3T<T>& q) {
+  const T x = p.x * q.x, y = p.y * q.y, z = p.z * q.z;
+  const T forms[4][3] = {{w.x * x, w.y * y, w.z * z},
+                         {w.x_minus_z * x, -w.z_minus_y * y, 0.0},
+                         {-w.y_minus_x * x, w.z_minus_y * z, 0.0},
+                         {w.y_minus_x * y, -w.x_minus_z * z, 0.0}};
+  T best = T(HUGE_VAL), value = T(0.0);
   for (const auto& form : forms) {
-    const double size = std::abs(form[0]) + std::abs(form[1]) + std::abs(form[2]);
+    const T size = std::abs(form[0]) + std::abs(form[1]) + std::abs(form[2]);
     if (size < best) {
       best = size;
       value = form[0] + form[1] + form[2];
