@@ -352,10 +352,11 @@ class CsvReader {
     if (!HasWeights()) return true;
     if (layout_.weight != kNoColumn) {
       *weight = fields_[layout_.weight];
-      if (!(*weight >= 0) || std::isinf(*weight)) {
-        FailAtLine(file_, line, "the weight is " + FormatDouble(*weight) + "; it must be 0 or more");
+      if (*weight == 0) return false;
+      if (!(*weight >= 1e-100 && *weight <= 1e100)) {
+        FailAtLine(file_, line, "the weight is " + FormatDouble(*weight) + "; it must be 0, or 1e-100 to 1e100");
       }
-      return *weight > 0;
+      return true;
     }
     double variance = 0;
     const auto add = [&](std::size_t column) {

@@ -85,6 +85,9 @@ bool IsMit(std::string_view bytes) {
 }
 
 Measurement ReadMit(const InputFile& file, const ReadOptions& options) {
+  if (file.bytes.size() < kHeaderBytes) {
+    FailAtByte(file, file.bytes.size(), "the file ends in its header of 64 bytes; fetch the file again");
+  }
   const Head16 head = ReadHead(file.bytes);
   CheckHead(file, head);
   const std::size_t n_ti = static_cast<std::size_t>(head[0]), n_to = static_cast<std::size_t>(head[1]);

@@ -4,6 +4,7 @@
 //   value(t, s) = f_r cos(theta_s) = table(p | t) ndf(u_m) / (4 sigma(u_t)),   p = warp^-1(u_m | t), m = half vector of
 //   t and s.
 // Each node of the table is one sample: p -> m by the warp -> s = 2 (m.t) m - t.
+#include <algorithm>
 #include <cmath>
 
 #include "lobefit/io/formats.h"
@@ -52,10 +53,9 @@ class Slice {
 
   std::size_t nodes() const { return tables_.spectra.width() * tables_.spectra.height(); }
 
-  Node At(std::size_t node) const {
-    const std::size_t width = tables_.spectra.width(), height = tables_.spectra.height();
-    const Vec2 point = {static_cast<double>(node % width) / static_cast<double>(width - 1),
-                        static_cast<double>(node / width) / static_cast<double>(height - 1)};
+  Node At(std::size_t node) const { return At(PointOf(node)); }
+
+  Node At(const Vec2& point) const {
     Node result = {};
     result.u = warp_.Sample(point, &result.pdf);
     result.theta_m = RglTheta(result.u.x);
@@ -64,6 +64,17 @@ class Slice {
     result.light = Reflect(viewer_, normal);
     result.above = result.cos_m > 0 && result.light.z > kHorizon && viewer_.z > kHorizon;
     return result;
+  }
+
+  // Solid angle of the lights nearer to this node than to others, up to a factor; the cells of the first and last
+  // column are half as wide and are measured at their middle, since at theta_m = 0 itself there is none.
+  double SolidAngle(std::size_t node, const Node& at) const {
+    const std::size_t width = tables_.spectra.width(), column = node % width;
+    const bool first = column == 0, last = column + 1 == width;
+    if (!first && !last) return Measure(at);
+    const double inwards = 0.25 / static_cast<double>(width - 1);
+    const Vec2 point = PointOf(node);
+    return 0.5 * Measure(At(Vec2{point.x + (first ? inwards : -inwards), point.y}));
   }
 
   // Hands the usable nodes to the builder. `valid_bit` is the bit of the mask that means a reliable node.
@@ -90,12 +101,24 @@ class Slice {
       const float* value = &tables_.spectra.values[index_ * values.size() * nodes() + i];
       for (std::size_t c = 0; c < values.size(); ++c) values[c] = factor * static_cast<double>(value[c * nodes()]);
       if (!builder->Add(node.light, viewer_, values.data(), static_cast<std::uint32_t>(index))) continue;
-      const double measure = node.pdf > 0 ? RglNormalJacobian(node.u.x, node.theta_m) * 4 * node.cos_m / node.pdf : 0.0;
-      builder->measurement().samples.solid_angle.push_back(cell * measure);
+      builder->measurement().samples.solid_angle.push_back(cell * SolidAngle(i, node));
     }
   }
 
  private:
+  Vec2 PointOf(std::size_t node) const {
+    const std::size_t width = tables_.spectra.width(), height = tables_.spectra.height();
+    return {static_cast<double>(node % width) / static_cast<double>(width - 1),
+            static_cast<double>(node / width) / static_cast<double>(height - 1)};
+  }
+
+  // d(light) = 4 (m.t) d(m), d(m) = Jacobian du, du = dp / pdf. Positive and finite whatever the file holds.
+  static double Measure(const Node& node) {
+    const double measure = RglNormalJacobian(node.u.x, node.theta_m) * 4 * std::max(0.0, node.cos_m) / node.pdf;
+    return measure > kLeastMeasure && measure < 1 / kLeastMeasure ? measure : kLeastMeasure;
+  }
+  static constexpr double kLeastMeasure = 1e-12;
+
   const RglTables& tables_;
   std::size_t index_;
   double theta_, phi_, turn_;

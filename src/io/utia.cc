@@ -9,6 +9,7 @@
 #include "lobefit/base/text.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/options.h"
+#include "lobefit/io/place.h"
 #include "lobefit/io/utia_grid.h"
 #include "lobefit/io/utia_value.h"
 
@@ -46,6 +47,11 @@ bool IsUtia(std::string_view bytes) {
 }
 
 Measurement ReadUtia(const InputFile& file, const ReadOptions& options) {
+  if (file.bytes.size() != kBytes) {
+    FailAtByte(
+        file, std::min(file.bytes.size(), kBytes),
+        "a UTIA table has " + std::to_string(kBytes) + " bytes, but the file has " + std::to_string(file.bytes.size()));
+  }
   MeasurementBuilder builder({{"R", "G", "B"}, {}});
   std::array<double, 3> values = {};
   for (std::size_t pair = 0; pair < kPairs; ++pair) {

@@ -6,6 +6,9 @@
 namespace lobefit {
 namespace {
 
+// What overflows or is not a number weighs nothing.
+constexpr double kMostVariance = 1e100;
+
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -52,6 +55,7 @@ void WeighBySigma(const std::vector<double>& sigma, Measurement* measurement) {
     const double reading = MeanOfChannels(samples, i) * samples.wi_z[i];
     const double deviation = sigma[i] * samples.wi_z[i] / (1 + reading);
     variance[i] = deviation * deviation;
+    if (!(variance[i] <= kMostVariance)) variance[i] = kMostVariance;
   }
   const double median = Median(variance);
   // With more than half of the samples free of uncertainty there is nothing to weigh by but the largest.
@@ -60,7 +64,7 @@ void WeighBySigma(const std::vector<double>& sigma, Measurement* measurement) {
   if (samples.weight.empty()) samples.weight.assign(samples.size(), 1.0);
   double sum = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples.weight[i] *= floor / (variance[i] + floor);
+    samples.weight[i] *= std::max(floor / (variance[i] + floor), 1e-12);
     sum += samples.weight[i];
   }
   for (double& weight : samples.weight) weight *= static_cast<double>(samples.size()) / sum;

@@ -46,6 +46,11 @@ inline int FuzzReader(bool (*recognise)(std::string_view), Measurement (*read)(c
     options.incident_sense = IncidentSense::kPropagation;
     options.angle_unit = AngleUnit::kDegrees;
     options.alta_interval = size % 4 == 1 ? IntervalKind::kBounds : IntervalKind::kOffsets;
+    options.repeated = RepeatedRows::kMean;
+    options.merl_cell = options.mit_cell = CellPosition::kEdge;
+    options.utia_encoding = UtiaEncoding::kSrgb;
+    options.exr_theta_i_deg = 30;
+    options.exr_axes = size % 4 == 1 ? ExrAxes::kHemisphere : ExrAxes::kSliceSqrt;
     if (size % 8 == 1) options.xml_naming = XmlNaming::kPlain;
   }
   recognise(bytes);
