@@ -139,7 +139,9 @@ Solution Solve(const Problem& problem, const Layout& layout, const std::vector<d
     if (solver.max_num_iterations <= 0) break;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &ceres_problem, &summary);
-    solution.u = Clamped(layout, solution.u.data());
+    // In place: the problem keeps the address.
+    const std::vector<double> clamped = Clamped(layout, solution.u.data());
+    std::copy(clamped.begin(), clamped.end(), solution.u.begin());
     solution.cost = summary.final_cost;
     solution.converged = summary.termination_type == ceres::CONVERGENCE;
     solution.iterations += static_cast<int>(summary.iterations.size());
