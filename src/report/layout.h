@@ -1,4 +1,4 @@
-// Where the panels stand: wide ones in two thirds of the page with narrow ones stacked beside them.
+// Where the panels stand on the page.
 #pragma once
 
 #include <functional>
@@ -18,9 +18,10 @@ struct PageLayout {
   double height = 0;       // bottom of the lowest panel
 };
 
-// Each wide panel, in order, takes as many of the narrow ones, in order, as its height has room for, at least one while
-// there are any; without one it takes the whole width. Left-over narrow ones stand side by side. `gap` separates rows
-// and columns.
+// Wide panels stand in order in a column of two thirds, narrow ones in a column of one third beside it. A wide panel
+// that begins below the last narrow one takes the whole width. Narrow panels for which the column would grow past the
+// wide ones stand side by side at the bottom; how many is chosen so that the page is shortest. `gap` separates rows and
+// columns.
 PageLayout ArrangePanels(const std::vector<PanelSize>& panels, double left, double top, double width, double gap);
 
 }  // namespace lobefit

@@ -20,7 +20,8 @@ namespace lobefit {
 namespace {
 
 constexpr int kLightSize = 220, kSkySize = 104;
-constexpr int kSkySamples = 40;       // half from the lobe, half by the cosine
+// Half from the lobe, half by the cosine; a table is slower to ask than the model.
+constexpr int kSkySamples = 40, kSkySamplesOfAModel = 240;
 constexpr double kLeastCover = 0.97;  // of the lit sphere that the samples must speak for
 
 using Color = std::array<double, 3>;
@@ -66,11 +67,11 @@ Color Sky(const Vec3& w, bool grey) {
 }
 
 // One point set for all pixels: the sky is smooth, and both spheres see the same directions.
-Vec2 Point2(int i) { return {(i + 0.5) / (kSkySamples / 2.0), std::fmod(0.5 + 0.6180339887498949 * i, 1.0)}; }
+Vec2 Point2(int i, int count) { return {(i + 0.5) / (count / 2.0), std::fmod(0.5 + 0.6180339887498949 * i, 1.0)}; }
 
 // Light comes from directions drawn from the fitted lobe (facets by the density of slopes) and by the cosine, weighted
 // by the balance heuristic.
-Sphere UnderSky(const Brdf& brdf, const ReportData& data, const ChannelColor& to_color) {
+Sphere UnderSky(const Brdf& brdf, const ReportData& data, const ChannelColor& to_color, int count) {
   const SlopeFrame lobe(data.fitted.lobe_shapes()[0]);
   const bool grey = data.channels() < 3;
   const Vec3 view = {0, 0, 1};
@@ -85,8 +86,8 @@ Sphere UnderSky(const Brdf& brdf, const ReportData& data, const ChannelColor& to
       const std::size_t pixel = row * kSkySize + static_cast<std::size_t>(column);
       Color sum = {0, 0, 0};
       int unknown = 0, taken = 0;
-      for (int i = 0; i < kSkySamples; ++i) {
-        const Vec2 u = Point2(i / 2);
+      for (int i = 0; i < count; ++i) {
+        const Vec2 u = Point2(i / 2, count);
         const double phi = 2 * kPi * u.y;
         Vec3 wi;
         if (i % 2 == 0) {
@@ -101,7 +102,7 @@ Sphere UnderSky(const Brdf& brdf, const ReportData& data, const ChannelColor& to
         if (wi.z <= 0.001) continue;
         const Vec3 h = HalfVector(wi, wo);
         const double density =
-            (SlopeD(lobe, h) * h.z / (4 * std::max(1e-9, Dot(wo, h))) + wi.z * kInvPi) * (kSkySamples / 2.0);
+            (SlopeD(lobe, h) * h.z / (4 * std::max(1e-9, Dot(wo, h))) + wi.z * kInvPi) * (count / 2.0);
         ++taken;
         if (!brdf(wi, wo, f_r.data())) {
           ++unknown;
@@ -120,6 +121,7 @@ Sphere UnderSky(const Brdf& brdf, const ReportData& data, const ChannelColor& to
 struct Spheres {
   std::array<Sphere, 4> sphere;  // measured and fitted under the light, under the sky
   std::array<double, 2> exposure;
+  bool measured = false;  // else only the fitted ones
 };
 
 cv::Mat Rendered(const Sphere& sphere, double exposure) {
@@ -136,22 +138,29 @@ cv::Mat Rendered(const Sphere& sphere, double exposure) {
 
 constexpr double kGap = 14, kGroupGap = 34;
 
-double Side(double width) { return std::min(260.0, (width - 2 * kGap - kGroupGap) / 4); }
+// Four spheres side by side, or the two fitted ones in a narrow panel.
+double Side(const Spheres& spheres, double width) {
+  return std::min(260.0, spheres.measured ? (width - 2 * kGap - kGroupGap) / 4 : (width - kGap) / 2);
+}
 
 void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
-  const double size = Side(content.width), used = 4 * size + 2 * kGap + kGroupGap;
+  const double size = Side(spheres, content.width),
+               used = spheres.measured ? 4 * size + 2 * kGap + kGroupGap : 2 * size + kGap;
   double x = content.x + std::max(0.0, (content.width - used) / 2);
-  const std::array<const char*, 4> names = {"measured", "fitted", "measured", "fitted"};
+  const std::array<const char*, 2> lights = {"one light, upper left", "sky with a low sun"};
   for (std::size_t k = 0; k < 4; ++k) {
+    const bool is_fitted = k % 2 == 1;
+    if (!is_fitted && !spheres.measured) continue;
     const Box box = {x, content.y + 42, size, size};
     const cv::Mat picture = Rendered(spheres.sphere[k], spheres.exposure[k / 2]);
     canvas->Image(RoundPicture(picture, static_cast<int>(std::lround(size * canvas->scale()))), box, false);
-    canvas->Text({box.center().x, content.y + 34}, names[k], style::Body(style::kInk, Align::kCenter));
-    if (k % 2 == 0) {
-      canvas->Text({x + size + kGap / 2, content.y + 14}, k == 0 ? "one light, upper left" : "sky with a low sun",
-                   style::Note(style::kSecondary, Align::kCenter));
+    canvas->Text({box.center().x, content.y + 34}, is_fitted ? "fitted" : "measured",
+                 style::Body(style::kInk, Align::kCenter));
+    if (!is_fitted || !spheres.measured) {
+      const double middle = spheres.measured ? x + size + kGap / 2 : box.center().x;
+      canvas->Text({middle, content.y + 14}, lights[k / 2], style::Note(style::kSecondary, Align::kCenter));
     }
-    x += size + (k == 1 ? kGroupGap : kGap);
+    x += size + (k == 1 && spheres.measured ? kGroupGap : kGap);
   }
 }
 
@@ -202,27 +211,32 @@ double SphereExposure(const LitSphere& sphere) {
 }
 
 std::optional<Panel> SpherePanel(const ReportData& data) {
-  if (!data.measurement.isotropic || data.material.model.lobes.empty()) return std::nullopt;
+  if (data.material.model.lobes.empty()) return std::nullopt;
   const ChannelColor to_color(data.measurement.channels);
-  const IsotropicLookup lookup(data.measurement);
-  const Brdf measured = [&lookup](const Vec3& wi, const Vec3& wo, double* f_r) { return lookup.Find(wi, wo, f_r); };
   const Brdf fitted = [&data](const Vec3& wi, const Vec3& wo, double* f_r) {
     data.fitted.Evaluate(wi, wo, f_r);
     return true;
   };
   const auto spheres = std::make_shared<Spheres>();
-  spheres->sphere[0] = LightSphere(measured, to_color, data.channels(), kLightSize);
-  const auto known =
-      static_cast<double>(std::count(spheres->sphere[0].known.begin(), spheres->sphere[0].known.end(), 1));
-  if (known < kLeastCover * static_cast<double>(spheres->sphere[0].known.size())) return std::nullopt;
-  spheres->sphere[1] = LightSphere(fitted, to_color, data.channels(), kLightSize);
-  spheres->sphere[2] = UnderSky(measured, data, to_color);
-  spheres->sphere[3] = UnderSky(fitted, data, to_color);
-  spheres->exposure = {SphereExposure(spheres->sphere[0]), SphereExposure(spheres->sphere[2])};
+  if (data.measurement.isotropic) {
+    const IsotropicLookup lookup(data.measurement);
+    const Brdf measured = [&lookup](const Vec3& wi, const Vec3& wo, double* f_r) { return lookup.Find(wi, wo, f_r); };
+    spheres->sphere[0] = LightSphere(measured, to_color, data.channels(), kLightSize);
+    const auto known =
+        static_cast<double>(std::count(spheres->sphere[0].known.begin(), spheres->sphere[0].known.end(), 1));
+    spheres->measured = known >= kLeastCover * static_cast<double>(spheres->sphere[0].known.size());
+    if (spheres->measured) spheres->sphere[2] = UnderSky(measured, data, to_color, kSkySamples);
+  }
+  spheres->sphere[1] = LightFitted(data, to_color, kLightSize);
+  spheres->sphere[3] = UnderSky(fitted, data, to_color, spheres->measured ? kSkySamples : kSkySamplesOfAModel);
+  // One exposure for a pair: the measured sphere sets it.
+  const std::size_t first = spheres->measured ? 0 : 1;
+  spheres->exposure = {SphereExposure(spheres->sphere[first]), SphereExposure(spheres->sphere[first + 2])};
   Panel panel;
   panel.id = "sphere";
   panel.title = "As it looks";
-  panel.height = [](Canvas*, double width) { return 42 + Side(width) + 8; };
+  panel.wide = spheres->measured;
+  panel.height = [spheres](Canvas*, double width) { return 42 + Side(*spheres, width) + 8; };
   panel.draw = [spheres](Canvas* canvas, const Box& content) { Draw(*spheres, canvas, content); };
   return panel;
 }

@@ -43,11 +43,19 @@ TEST(ArrangePanels, AWidePanelAloneTakesTheWholeWidth) {
   EXPECT_DOUBLE_EQ(layout.height, 300);
 }
 
-TEST(ArrangePanels, NarrowOnesFillTheHeightBesideAWideOne) {
-  const PageLayout layout = ArrangePanels({Wide(600), Narrow(200), Narrow(250), Narrow(300)}, 0, 0, 1200, 20);
-  // The first two fit beside the wide one and end with it; the third has a row of its own.
-  EXPECT_DOUBLE_EQ(layout.boxes[2].bottom(), 600);
-  EXPECT_DOUBLE_EQ(layout.boxes[3].y, 620);
+TEST(ArrangePanels, AWidePanelBelowTheNarrowColumnTakesTheWholeWidth) {
+  const PageLayout layout = ArrangePanels({Wide(600), Wide(300), Narrow(200), Narrow(250)}, 0, 0, 1200, 20);
+  EXPECT_DOUBLE_EQ(layout.boxes[0].width, 1200 - 20 - (1200 - 40) / 3.0);
+  EXPECT_DOUBLE_EQ(layout.boxes[1].width, 1200);
+  EXPECT_DOUBLE_EQ(layout.height, 920);
+}
+
+TEST(ArrangePanels, NarrowOnesThatWouldStickOutStandBelow) {
+  const PageLayout layout =
+      ArrangePanels({Wide(300), Narrow(280), Narrow(250), Narrow(250), Narrow(250)}, 0, 0, 1200, 20);
+  EXPECT_DOUBLE_EQ(layout.boxes[1].y, 0);
+  for (const std::size_t k : {2, 3, 4}) EXPECT_DOUBLE_EQ(layout.boxes[k].y, 320);
+  EXPECT_DOUBLE_EQ(layout.height, 570);
 }
 
 }  // namespace

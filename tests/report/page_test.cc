@@ -31,11 +31,11 @@ TEST(Page, AFullTableFillsEveryPanel) {
   EXPECT_EQ(IdsOf(material, test::Measure(material, test::TablePairs(), 0.03, true)).size(), PanelMakers().size());
 }
 
-TEST(Page, AnInPlaneMeasurementHasNoMapsAndNoSpheres) {
+TEST(Page, AnInPlaneMeasurementHasNoMaps) {
   const Material material = test::MakeMaterial(1, false);
   const std::vector<std::string> ids =
       IdsOf(material, test::Measure(material, test::GoniometerPairs(false), 0.03, false));
-  for (const char* absent : {"maps", "sphere", "burley"}) EXPECT_THAT(ids, Not(Contains(absent)));
+  for (const char* absent : {"maps", "burley"}) EXPECT_THAT(ids, Not(Contains(absent)));
   for (const char* present : {"curves", "parameters", "quality", "ndf", "residuals", "energy", "correlation"})
     EXPECT_THAT(ids, Contains(present));
 }
