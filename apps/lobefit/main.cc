@@ -24,6 +24,7 @@ constexpr Verb kVerbs[] = {
     {"info", "describe a measurement file", SetUpInfo},
     {"fit", "fit a reflectance model to a measurement file", SetUpFit},
     {"report", "draw the report of a fitted material against its measurement again", SetUpReport},
+    {"convert", "write a measurement file in another format, and say what was lost", SetUpConvert},
     {"synth", "make a synthetic measurement file from a material or recipe", SetUpSynth},
     {"eval", "evaluate a quantity of the papers, with gradient, for rows of CSV", SetUpEval},
 };

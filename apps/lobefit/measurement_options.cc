@@ -1,6 +1,7 @@
 #include "measurement_options.h"
 
 #include "lobefit/io/options.h"
+#include "lobefit/measurement/spectrum.h"
 
 namespace lobefit {
 
@@ -9,6 +10,10 @@ void MeasurementOptions::AddTo(CLI::App* app) {
   app->add_option("--theta-i", theta_i_, "polar angles of the light to use, degrees: LOW:HIGH or one value")
       ->group(part);
   app->add_option("--phi-i", phi_i_, "azimuths of the light to use, degrees: LOW:HIGH or one value")->group(part);
+  app->add_option(
+         "--channels", channels_,
+         "channels to use: all (default), rgb, luminance, or a list of names, wavelengths or ranges (550, 400:700)")
+      ->group(part);
   const std::vector<ReadOptionEntry>& table = ReadOptionTable();
   words_.resize(table.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -28,6 +33,7 @@ Measurement MeasurementOptions::Load(const std::string& path) const {
   }
   Measurement measurement = ReadMeasurement(path, options);
   Apply(selection, &measurement);
+  if (!channels_.empty() && channels_ != "all") Apply(MakeChannelMap(channels_, measurement.channels), &measurement);
   return measurement;
 }
 

@@ -19,7 +19,7 @@ class MeasurementOptions {
   Measurement Load(const std::string& path) const;
 
  private:
-  std::string theta_i_, phi_i_;
+  std::string theta_i_, phi_i_, channels_;
   std::vector<std::string> words_;  // of the options of ReadOptionTable(), in its order; empty: not given
 };
 

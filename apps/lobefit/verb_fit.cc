@@ -6,6 +6,7 @@
 
 #include "measurement_options.h"
 #include "recipe_options.h"
+#include "report_formats.h"
 #include "summary.h"
 #include "verb.h"
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ struct FitVerb {
   MeasurementOptions measurement;
   RecipeOptions recipe;
   FitOptions fit;
-  std::string file, out = ".", name;
+  std::string file, out = ".", name, format = "png";
   bool no_report = false;
 };
 
@@ -72,13 +73,15 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
 
   const std::string name = verb.name.empty() ? std::filesystem::path(verb.file).stem().string() : verb.name;
   const std::filesystem::path document = folder / (name + ".material.json"), picture = folder / (name + ".report.png");
+  const std::vector<std::string> formats = ParseReportFormats(verb.format);
   // The document first: it is kept even where drawing fails.
   WriteMaterial(material, document);
+  std::string pictures;
   if (!verb.no_report) {
     start = std::chrono::steady_clock::now();
     ReportOptions report;
     report.threads = options.threads;
-    WriteReportPng(material, measurement, picture, report);
+    pictures = WriteReports(formats, material, measurement, picture, report);
     material.timings_s["report"] = Seconds(start);
     WriteMaterial(material, document);
   }
@@ -86,7 +89,7 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
     fmt::print("{}", ToJson(material));
   } else {
     fmt::print("{}Result:  {}\n", Summary(material), document.string());
-    if (!verb.no_report) fmt::print("Picture: {}\n", picture.string());
+    fmt::print("{}", pictures);
   }
   return Judge(material);
 }
@@ -98,6 +101,7 @@ std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common) {
   app->add_option("FILE", verb->file, "measurement file")->required();
   app->add_option("--out", verb->out, "folder of the results (default: the current one)");
   app->add_option("--name", verb->name, "NAME of the results (default: the file's name without its ending)");
+  app->add_option("--format", verb->format, "formats of the report: png (default), html, or both with a comma between");
   app->add_flag("--no-report", verb->no_report, "write no picture");
   app->add_option("--starts", verb->fit.starts, "descents from the best-ranked starts (default 8)")
       ->check(CLI::Range(1, 100000));

@@ -1,15 +1,19 @@
 // lobefit info: what a measurement file holds.
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "measurement_options.h"
 #include "verb.h"
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/text.h"
+#include "lobefit/io/write.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
+#include "lobefit/measurement/statistics.h"
 
 namespace lobefit {
 namespace {
@@ -27,12 +31,20 @@ struct Description {
   Range theta_i, theta_o;
   std::vector<Range> values;
   bool in_plane;
+  std::optional<Statistics> statistics;
 };
 
-Description Describe(const Measurement& measurement) {
+// Albedo and reciprocity interpolate the samples; a table of millions takes seconds for that, so it is asked for.
+constexpr std::size_t kStatisticsByDefault = 100000;
+
+Description DescribeRanges(const Measurement& measurement) {
   const Samples& samples = measurement.samples;
-  Description description = {
-      GroupByIncidence(measurement), {}, {}, std::vector<Range>(samples.values.size()), IsInPlane(samples)};
+  Description description = {GroupByIncidence(measurement),
+                             {},
+                             {},
+                             std::vector<Range>(samples.values.size()),
+                             !measurement.isotropic && IsInPlane(samples),
+                             {}};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     description.theta_i.Add(samples.wi_z[i]);
     description.theta_o.Add(samples.wo_z[i]);
@@ -47,6 +59,45 @@ Description Describe(const Measurement& measurement) {
   return description;
 }
 
+nlohmann::ordered_json StatisticsToJson(const Statistics& statistics) {
+  nlohmann::ordered_json incidences = nlohmann::ordered_json::array();
+  for (const IncidenceStatistics& incidence : statistics.incidences) {
+    incidences.push_back({{"theta_i_deg", RadiansToDegrees(PolarAngle(incidence.wi))},
+                          {"phi_i_deg", RadiansToDegrees(Azimuth(incidence.wi))},
+                          {"albedo", incidence.albedo},
+                          {"coverage", incidence.coverage}});
+  }
+  return {{"azimuths_deg", statistics.azimuths_deg},
+          {"reciprocal_pairs", statistics.reciprocal_pairs},
+          {"reciprocity_median", statistics.reciprocity_median},
+          {"reciprocity_percentile_90", statistics.reciprocity_percentile_90},
+          {"conserves_energy", statistics.ConservesEnergy()},
+          {"albedo", incidences}};
+}
+
+std::string StatisticsToText(const Statistics& statistics, const Measurement& measurement) {
+  std::string text;
+  if (!statistics.azimuths_deg.empty() && statistics.azimuths_deg.size() <= 12) {
+    text += fmt::format("  azimuths     {:.5g} degrees\n", fmt::join(statistics.azimuths_deg, ", "));
+  }
+  if (statistics.reciprocal_pairs > 0) {
+    text += fmt::format("  reciprocity  {} exchanged pairs differ by {:.2g} % (median), {:.2g} % (90 %)\n",
+                        statistics.reciprocal_pairs, 100 * statistics.reciprocity_median,
+                        100 * statistics.reciprocity_percentile_90);
+  }
+  for (const IncidenceStatistics& incidence : statistics.incidences) {
+    text += fmt::format("  albedo       at theta_i {:.4g}:", RadiansToDegrees(PolarAngle(incidence.wi)));
+    for (std::size_t c = 0; c < incidence.albedo.size() && c < 4; ++c)
+      text += fmt::format("  {} {:.3f}", measurement.channels.names[c], incidence.albedo[c]);
+    text += incidence.coverage < 0.9
+                ? fmt::format("  (a guess: the samples cover {:.0f} % of the hemisphere)\n", 100 * incidence.coverage)
+                : "\n";
+  }
+  if (!statistics.ConservesEnergy())
+    text += fmt::format("  energy       NOT conserved: an albedo of {:.3f}\n", statistics.largest_albedo);
+  return text;
+}
+
 std::string ToJson(const Measurement& measurement, const Description& description) {
   nlohmann::ordered_json set_aside = nlohmann::ordered_json::object(), directions = nlohmann::ordered_json::array();
   for (int r = 0; r < kSetAsideReasons; ++r) {
@@ -59,22 +110,23 @@ std::string ToJson(const Measurement& measurement, const Description& descriptio
   }
   nlohmann::ordered_json values = nlohmann::ordered_json::array();
   for (const Range& range : description.values) values.push_back({range.low, range.high});
-  const nlohmann::ordered_json json = {{"file", measurement.source},
-                                       {"sha256", measurement.sha256},
-                                       {"format", measurement.format},
-                                       {"samples", measurement.samples.size()},
-                                       {"set_aside", set_aside},
-                                       {"channels", measurement.channels.names},
-                                       {"wavelengths_nm", measurement.channels.wavelengths_nm},
-                                       {"incidences", description.incidences.wi.size()},
-                                       {"incident_directions", directions},
-                                       {"isotropic", measurement.isotropic},
-                                       {"in_plane", description.in_plane},
-                                       {"theta_i_deg", {description.theta_i.low, description.theta_i.high}},
-                                       {"theta_o_deg", {description.theta_o.low, description.theta_o.high}},
-                                       {"values", values},
-                                       {"conventions", measurement.conventions},
-                                       {"remarks", measurement.remarks}};
+  nlohmann::ordered_json json = {{"file", measurement.source},
+                                 {"sha256", measurement.sha256},
+                                 {"format", measurement.format},
+                                 {"samples", measurement.samples.size()},
+                                 {"set_aside", set_aside},
+                                 {"channels", measurement.channels.names},
+                                 {"wavelengths_nm", measurement.channels.wavelengths_nm},
+                                 {"incidences", description.incidences.wi.size()},
+                                 {"incident_directions", directions},
+                                 {"isotropic", measurement.isotropic},
+                                 {"in_plane", description.in_plane},
+                                 {"theta_i_deg", {description.theta_i.low, description.theta_i.high}},
+                                 {"theta_o_deg", {description.theta_o.low, description.theta_o.high}},
+                                 {"values", values},
+                                 {"conventions", measurement.conventions},
+                                 {"remarks", measurement.remarks}};
+  if (description.statistics) json["statistics"] = StatisticsToJson(*description.statistics);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -98,6 +150,7 @@ std::string ToText(const Measurement& measurement, const Description& descriptio
   text += fmt::format("  isotropic    {}\n",
                       measurement.isotropic ? "yes, by construction of the format" : "not by construction");
   if (description.in_plane) text += "  in plane     all samples lie in one plane through the normal\n";
+  if (description.statistics) text += StatisticsToText(*description.statistics, measurement);
   for (const auto& [option, value] : measurement.conventions) text += fmt::format("  {:<12} {}\n", option, value);
   for (const std::string& remark : measurement.remarks) text += "  note         " + remark + '\n';
   return text;
@@ -109,10 +162,17 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
   auto options = std::make_shared<MeasurementOptions>();
   auto file = std::make_shared<std::string>();
   app->add_option("FILE", *file, "measurement file")->required();
+  auto statistics = std::make_shared<bool>(false);
+  app->add_flag("--statistics", *statistics,
+                "albedo and reciprocity for a large table too (small ones show them anyway)");
   options->AddTo(app);
   return [=] {
     const Measurement measurement = options->Load(*file);
-    const Description description = Describe(measurement);
+    Description description = DescribeRanges(measurement);
+    if (*statistics || measurement.samples.size() <= kStatisticsByDefault) {
+      description.statistics = Describe(
+          measurement, measurement.conventions.count("channels") == 0 ? TabulatedBrdf(*file, measurement) : nullptr);
+    }
     fmt::print("{}\n", common->json ? ToJson(measurement, description) : ToText(measurement, description));
     return 0;
   };

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "measurement_options.h"
+#include "report_formats.h"
 #include "verb.h"
 #include <fmt/format.h>
 
@@ -16,7 +17,8 @@ namespace {
 
 struct ReportVerb {
   MeasurementOptions measurement;
-  std::string material, file, out;
+  std::string material, file, out, format = "png";
+  double scale = 2;
 };
 
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
@@ -35,8 +37,8 @@ int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   }
   ReportOptions options;
   options.threads = common.Threads();
-  WriteReportPng(material, measurement, picture, options);
-  fmt::print("Picture: {}\n", picture.string());
+  options.scale = verb.scale;
+  fmt::print("{}", WriteReports(ParseReportFormats(verb.format), material, measurement, picture, options));
   return kExitDone;
 }
 
@@ -47,6 +49,9 @@ std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
   app->add_option("MATERIAL", verb->material, "a *.material.json")->required();
   app->add_option("MEASUREMENT", verb->file, "the measurement file that it was fitted to")->required();
   app->add_option("--out", verb->out, "the picture (default: NAME.report.png beside the material)");
+  app->add_option("--format", verb->format, "png (default), html, or both with a comma between");
+  app->add_option("--scale", verb->scale, "pixels to one unit of the page, which is 1320 units wide (default 2)")
+      ->check(CLI::Range(0.25, 4.0));
   verb->measurement.AddTo(app);
   return [=] { return RunReport(*verb, *common); };
 }

@@ -1,0 +1,20 @@
+// The formats of a report: which files a verb writes for one.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lobefit/report/report.h"
+
+namespace lobefit {
+
+// "png,html" as a list. Throws UsageError that lists the formats.
+std::vector<std::string> ParseReportFormats(const std::string& text);
+
+// Writes `picture` (png) and the page of the same name (html). Returns lines for people that name the files.
+std::string WriteReports(const std::vector<std::string>& formats, const Material& material,
+                         const Measurement& measurement, const std::filesystem::path& picture,
+                         const ReportOptions& options);
+
+}  // namespace lobefit
