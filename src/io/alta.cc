@@ -1,15 +1,13 @@
 // ALTA text and binary data: "#KEY value" header, then rows of input coordinates, values and confidence intervals, as
 // text or as 8-byte floats. Angles in radians; PARAM_IN names the coordinates, PARAM_OUT whether the values have the
 // cosine of the outgoing direction.
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "lobefit/io/alta_directions.h"
+#include "lobefit/io/alta_header.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/options.h"
 #include "lobefit/io/place.h"
@@ -17,184 +15,14 @@
 namespace lobefit {
 namespace {
 
-constexpr std::size_t kMostOutputs = 4096;
 constexpr double kLargestCoordinate = 2 * kPi + 1e-6;
-
-struct Entry {
-  std::string value;
-  std::size_t line;
-};
-
-struct Header {
-  std::map<std::string, Entry> keys;
-  bool binary = false;
-  std::size_t end = 0;       // offset of the first byte after the header
-  std::size_t end_line = 0;  // number of its last line
-};
-
-// Both spellings of the end mark: "#ALTA HEADER END" and "#ALTA END HEADER".
-bool IsEndMark(const std::vector<std::string_view>& words) {
-  return words.size() == 3 && words[0] == "ALTA" &&
-         ((words[1] == "HEADER" && words[2] == "END") || (words[1] == "END" && words[2] == "HEADER"));
-}
-
-Header ReadHeader(const InputFile& file) {
-  Header header;
-  LineReader lines(file.bytes);
-  std::string_view line;
-  while (header.end = lines.offset(), header.end_line = lines.line_number(), lines.Next(&line)) {
-    if (Trim(line).empty()) continue;
-    if (line[0] != '#') break;
-    if (line.size() == 1 || line[1] == ' ' || line[1] == '\t') continue;
-    line.remove_prefix(1);
-    const std::vector<std::string_view> words = SplitBlanks(line);
-    if (words.empty()) continue;
-    const bool end_mark = IsEndMark(words), begin_stream = words[0] == "BEGIN_STREAM";
-    if (end_mark || begin_stream) {
-      header.binary = begin_stream;
-      header.end = lines.offset();
-      header.end_line = lines.line_number();
-      break;
-    }
-    if (words[0] == "ALTA") continue;
-    const std::string key(words[0]);
-    const auto [entry, is_new] =
-        header.keys.emplace(key, Entry{std::string(Trim(line.substr(key.size()))), lines.line_number()});
-    if (!is_new) {
-      FailAtLine(file, lines.line_number(),
-                 "the key #" + Excerpt(key) + " stands in line " + std::to_string(entry->second.line) + " already");
-    }
-  }
-  return header;
-}
-
-const Entry* Find(const Header& header, const std::string& key) {
-  const auto entry = header.keys.find(key);
-  return entry == header.keys.end() ? nullptr : &entry->second;
-}
-
-const Entry& Require(const InputFile& file, const Header& header, const std::string& key, const std::string& example) {
-  const Entry* entry = Find(header, key);
-  if (entry == nullptr) {
-    FailAtLine(file, std::max<std::size_t>(header.end_line, 1),
-               "the header ends without #" + key + "; add it, as in '#" + key + " " + example + "'");
-  }
-  return *entry;
-}
-
-// What the columns of a row are.
-struct Layout {
-  const AltaInput* input = nullptr;
-  std::size_t outputs = 0;
-  std::vector<int> intervals;  // columns of confidence of each output: 0, 1 or 2
-  bool one_interval_number = false;
-  ValueKind kind = ValueKind::kBrdf;
-  bool kind_from_option = false;
-  Channels channels;
-
-  std::size_t interval_columns() const {
-    std::size_t sum = 0;
-    for (const int columns : intervals) sum += static_cast<std::size_t>(columns);
-    return sum;
-  }
-};
-
-void ReadDim(const InputFile& file, const Header& header, Layout* layout, std::size_t* inputs) {
-  const Entry& dim = Require(file, header, "DIM", "3 1");
-  const std::vector<std::string_view> words = SplitBlanks(dim.value);
-  const std::optional<long long> x = words.size() == 2 ? ParseInteger(words[0]) : std::nullopt;
-  const std::optional<long long> y = words.size() == 2 ? ParseInteger(words[1]) : std::nullopt;
-  if (!x || !y || *x < 1 || *x > 6 || *y < 1 || *y > static_cast<long long>(kMostOutputs)) {
-    FailAtLine(file, dim.line,
-               "#DIM is '" + Excerpt(dim.value) + "'; allowed are two counts, 1 to 6 coordinates and 1 to " +
-                   std::to_string(kMostOutputs) + " values, as in '#DIM 3 1'");
-  }
-  *inputs = static_cast<std::size_t>(*x);
-  layout->outputs = static_cast<std::size_t>(*y);
-}
-
-void ReadInput(const InputFile& file, const Header& header, std::size_t inputs, Layout* layout) {
-  const Entry& entry = Require(file, header, "PARAM_IN", "RUSIN_TH_TD_PD");
-  std::vector<std::string> names;
-  for (const AltaInput& input : AltaInputs()) {
-    if (input.name == entry.value) layout->input = &input;
-    names.emplace_back(input.name);
-  }
-  if (layout->input == nullptr) {
-    FailAtLine(file, entry.line,
-               "#PARAM_IN is '" + Excerpt(entry.value) + "'" + DidYouMean(entry.value, names) +
-                   "; directions are known for " + Join(names));
-  }
-  if (layout->input->dimension != inputs) {
-    FailAtLine(file, entry.line,
-               "#PARAM_IN " + std::string(layout->input->name) + " has " + std::to_string(layout->input->dimension) +
-                   " coordinates, but #DIM states " + std::to_string(inputs));
-  }
-}
-
-void ReadOutput(const InputFile& file, const Header& header, const ReadOptions& options, Layout* layout) {
-  const Entry* entry = Find(header, "PARAM_OUT");
-  const std::string stated = entry == nullptr ? "UNKNOWN_OUTPUT" : entry->value;
-  const std::vector<std::string_view> words = SplitBlanks(stated);
-  const std::string name(words.empty() ? "UNKNOWN_OUTPUT" : words[0]);
-  const std::size_t line = entry == nullptr ? std::max<std::size_t>(header.end_line, 1) : entry->line;
-  for (const std::string_view word : words) {
-    if (word != name) {
-      FailAtLine(file, line,
-                 "#PARAM_OUT names different outputs, '" + Excerpt(name) + "' and '" + Excerpt(word) +
-                     "'; one kind of value a file is allowed");
-    }
-  }
-  layout->kind_from_option = options.value_kind.has_value();
-  if (name == "INV_STERADIAN_COSINE_FACTOR") {
-    layout->kind = ValueKind::kBrdfCosO;
-  } else if (name != "INV_STERADIAN" && name != "RGB_COLOR" && name != "XYZ_COLOR" && !options.value_kind) {
-    FailAtLine(file, line,
-               "#PARAM_OUT is '" + Excerpt(name) +
-                   "', which does not say what the values are; known are "
-                   "INV_STERADIAN, INV_STERADIAN_COSINE_FACTOR, RGB_COLOR and XYZ_COLOR: state it with "
-                   "--value-kind, one of " +
-                   AllowedValueKinds());
-  }
-  layout->kind = options.value_kind.value_or(layout->kind);
-  if ((name == "RGB_COLOR" || name == "XYZ_COLOR") && layout->outputs != 3) {
-    FailAtLine(file, line, "#PARAM_OUT " + name + " has 3 values, but #DIM states " + std::to_string(layout->outputs));
-  }
-  if (layout->outputs == 1) {
-    layout->channels.names = {"Y"};
-  } else if (layout->outputs == 3) {
-    layout->channels.names =
-        name == "XYZ_COLOR" ? std::vector<std::string>{"X", "Y", "Z"} : std::vector<std::string>{"R", "G", "B"};
-  } else {
-    for (std::size_t c = 1; c <= layout->outputs; ++c) layout->channels.names.push_back("y" + std::to_string(c));
-  }
-}
-
-void ReadIntervals(const InputFile& file, const Header& header, Layout* layout) {
-  layout->intervals.assign(layout->outputs, 0);
-  const Entry* entry = Find(header, "VS");
-  if (entry == nullptr) return;
-  const std::vector<std::string_view> words = SplitBlanks(entry->value);
-  layout->one_interval_number = words.size() == 1;
-  bool valid = !words.empty() && words.size() <= layout->outputs;
-  for (std::size_t c = 0; valid && c < words.size(); ++c) {
-    const std::optional<long long> columns = ParseInteger(words[c]);
-    valid = columns && *columns >= 0 && *columns <= 2;
-    if (valid) layout->intervals[c] = static_cast<int>(*columns);
-  }
-  if (!valid) {
-    FailAtLine(file, entry->line,
-               "#VS is '" + Excerpt(entry->value) + "'; allowed is 0, 1 or 2 for each of the " +
-                   std::to_string(layout->outputs) + " values");
-  }
-}
 
 // Half-widths of the confidence intervals, squared, until it is known how the columns are meant.
 class Intervals {
  public:
   // The columns of one row, in the order of the outputs; factor turns a value into f_r. Call Keep where the sample is
   // used.
-  void Take(const Layout& layout, const double* values, const double* columns, double factor, std::size_t line) {
+  void Take(const AltaLayout& layout, const double* values, const double* columns, double factor, std::size_t line) {
     as_bounds_ = as_offsets_ = 0;
     std::size_t at = 0, outputs = 0;
     for (std::size_t c = 0; c < layout.outputs; ++c) {
@@ -274,7 +102,7 @@ class Intervals {
 
 class RowTaker {
  public:
-  explicit RowTaker(const InputFile& file, const Layout& layout)
+  explicit RowTaker(const InputFile& file, const AltaLayout& layout)
       : file_(file), layout_(layout), builder_(layout.channels), values_(layout.outputs) {}
 
   // One row: coordinates, values, columns of confidence; `place` is the line of text or the number of the row.
@@ -306,13 +134,13 @@ class RowTaker {
 
  private:
   const InputFile& file_;
-  const Layout& layout_;
+  const AltaLayout& layout_;
   MeasurementBuilder builder_;
   std::vector<double> values_;
   Intervals intervals_;
 };
 
-Measurement ReadText(const InputFile& file, const Header& header, Layout* layout, const ReadOptions& options) {
+Measurement ReadText(const InputFile& file, const AltaHeader& header, AltaLayout* layout, const ReadOptions& options) {
   const std::size_t plain = layout->input->dimension + layout->outputs;
   std::optional<RowTaker> taker;
   std::vector<double> row;
@@ -360,22 +188,23 @@ double LoadDouble(const char* bytes, bool big_endian) {
   return value;
 }
 
-void RequireValue(const InputFile& file, const Header& header, const std::string& key, const std::string& value) {
-  const Entry& entry = Require(file, header, key, value);
+void RequireValue(const InputFile& file, const AltaHeader& header, const std::string& key, const std::string& value) {
+  const AltaEntry& entry = RequireKey(file, header, key, value);
   if (entry.value != value) {
     FailAtLine(file, entry.line, "#" + key + " is '" + Excerpt(entry.value) + "'; allowed is " + value);
   }
 }
 
-Measurement ReadBinary(const InputFile& file, const Header& header, Layout* layout, const ReadOptions& options) {
+Measurement ReadBinary(const InputFile& file, const AltaHeader& header, AltaLayout* layout,
+                       const ReadOptions& options) {
   RequireValue(file, header, "FORMAT", "binary");
   RequireValue(file, header, "VERSION", "0");
   RequireValue(file, header, "PRECISION", "ieee754-double");
-  const Entry& endian = Require(file, header, "ENDIAN", "little");
+  const AltaEntry& endian = RequireKey(file, header, "ENDIAN", "little");
   if (endian.value != "little" && endian.value != "big") {
     FailAtLine(file, endian.line, "#ENDIAN is '" + Excerpt(endian.value) + "'; allowed are little and big");
   }
-  const Entry& count_entry = Require(file, header, "SAMPLE_COUNT", "150");
+  const AltaEntry& count_entry = RequireKey(file, header, "SAMPLE_COUNT", "150");
   const std::optional<long long> count = ParseInteger(count_entry.value);
   if (!count || *count < 1) {
     FailAtLine(file, count_entry.line,
@@ -425,14 +254,9 @@ bool IsAlta(std::string_view bytes) {
 }
 
 Measurement ReadAlta(const InputFile& file, const ReadOptions& options) {
-  const Header header = ReadHeader(file);
-  Layout layout;
-  std::size_t inputs = 0;
-  ReadDim(file, header, &layout, &inputs);
-  ReadInput(file, header, inputs, &layout);
-  ReadOutput(file, header, options, &layout);
-  ReadIntervals(file, header, &layout);
-  const Entry* format = Find(header, "FORMAT");
+  const AltaHeader header = ReadAltaHeader(file);
+  AltaLayout layout = ReadAltaLayout(file, header, options);
+  const AltaEntry* format = FindKey(header, "FORMAT");
   if (!header.binary && format != nullptr && format->value == "binary") {
     FailAtLine(file, std::max<std::size_t>(header.end_line, 1),
                "the header says #FORMAT binary, but has no #BEGIN_STREAM");

@@ -4,11 +4,11 @@
 // back is turned about y, so that the back's normal is +z.
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "lobefit/io/angle_basis.h"
+#include "lobefit/io/bsdf_xml_blocks.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/place.h"
 #include "lobefit/io/tensor_tree.h"
@@ -18,24 +18,6 @@ namespace lobefit {
 namespace {
 
 constexpr std::size_t kMostPatchesInRing = 100000;
-
-// How the data are laid out ("IncidentDataStructure").
-struct Structure {
-  bool is_tree = false;
-  int rank = 0;                    // of a tree
-  bool incident_is_column = true;  // of a matrix: the incident patch runs fastest
-};
-
-Structure ReadStructure(const XmlFile& xml, pugi::xml_node definition) {
-  const pugi::xml_node element = xml.OnlyChild(definition, "IncidentDataStructure");
-  const std::string name = ToLower(xml.Text(element));
-  if (name == "columns") return {false, 0, true};
-  if (name == "rows") return {false, 0, false};
-  if (name == "tensortree3") return {true, 3, true};
-  if (name == "tensortree4") return {true, 4, true};
-  xml.Fail(element, "the IncidentDataStructure is '" + Excerpt(xml.Text(element)) +
-                        "'; allowed are Columns, Rows, TensorTree3 and TensorTree4");
-}
 
 double BoundDegrees(const XmlFile& xml, pugi::xml_node block, const char* name) {
   const pugi::xml_node element = xml.OnlyChild(xml.OnlyChild(block, "ThetaBounds"), name);
@@ -103,123 +85,6 @@ const AngleBasis& FindBasis(const XmlFile& xml, pugi::xml_node block, const char
   xml.Fail(element, std::string(element_name) + " is '" + Excerpt(xml.Text(element)) + "'; known are " + Join(names));
 }
 
-// The block of one wavelength in the direction that is read.
-struct Block {
-  std::string wavelength;
-  std::optional<double> nanometres;
-  pugi::xml_node element;
-};
-
-std::optional<double> Nanometres(const XmlFile& xml, pugi::xml_node wavelength) {
-  const std::string unit = ToLower(wavelength.attribute("unit").value());
-  const std::optional<double> number = ParseDouble(xml.Text(wavelength));
-  if (!number || !(*number > 0) || !std::isfinite(*number)) return std::nullopt;
-  if (unit == "nanometer" || unit == "nm") return number;
-  if (unit == "micron" || unit == "micrometer" || unit == "um") return *number * 1000;
-  return std::nullopt;
-}
-
-// Blocks by lower-case name of the direction ("reflection front").
-std::map<std::string, std::vector<Block>> ReadBlocks(const XmlFile& xml, pugi::xml_node layer) {
-  std::map<std::string, std::vector<Block>> by_direction;
-  for (const pugi::xml_node data : layer.children("WavelengthData")) {
-    const pugi::xml_node wavelength = xml.OnlyChild(data, "Wavelength");
-    for (const pugi::xml_node element : data.children("WavelengthDataBlock")) {
-      Block block = {std::string(xml.Text(wavelength)), Nanometres(xml, wavelength), element};
-      std::vector<Block>& blocks = by_direction[ToLower(xml.Text(xml.OnlyChild(element, "WavelengthDataDirection")))];
-      for (const Block& other : blocks) {
-        if (ToLower(other.wavelength) == ToLower(block.wavelength)) {
-          xml.Fail(element, "a second block of the same direction and wavelength '" + Excerpt(block.wavelength) +
-                                "'; the first one is in line " + std::to_string(xml.Line(other.element)));
-        }
-      }
-      blocks.push_back(std::move(block));
-    }
-  }
-  return by_direction;
-}
-
-struct Chosen {
-  Side side = Side::kFront;
-  std::string name;
-  std::vector<Block> blocks;
-};
-
-Chosen ChooseSide(const XmlFile& xml, pugi::xml_node layer, const ReadOptions& options) {
-  const std::map<std::string, std::vector<Block>> by_direction = ReadBlocks(xml, layer);
-  const auto name_of = [&](Side side) {
-    return (side == Side::kFront) == (options.xml_naming == XmlNaming::kPlain) ? "Reflection Front" : "Reflection Back";
-  };
-  const auto has = [&](Side side) { return by_direction.count(ToLower(name_of(side))) > 0; };
-  Chosen chosen;
-  chosen.side = options.side.value_or(has(Side::kFront) || !has(Side::kBack) ? Side::kFront : Side::kBack);
-  chosen.name = name_of(chosen.side);
-  if (!has(chosen.side)) {
-    std::vector<std::string> present;
-    for (const auto& [direction, blocks] : by_direction) present.push_back("'" + Excerpt(direction) + "'");
-    xml.Fail(layer,
-             "<Layer> has no data block '" + chosen.name + "'" +
-                 (options.side ? "; choose the other --side or --xml-naming" : "; only reflection can be fitted") +
-                 ". It has " + (present.empty() ? "no block at all" : Join(present)));
-  }
-  chosen.blocks = by_direction.at(ToLower(chosen.name));
-  return chosen;
-}
-
-// What is read: the channels of the measurement and, for each, its block. A tree in CIE Y, u', v' has these three
-// blocks and the channels X, Y, Z.
-struct Selected {
-  Channels channels;
-  std::vector<Block> blocks;
-  bool yuv = false;
-};
-
-Selected SelectWavelengths(const XmlFile& xml, const Chosen& chosen, const Structure& structure,
-                           const ReadOptions& options) {
-  const auto find = [&](const std::string& name) -> const Block* {
-    for (const Block& block : chosen.blocks) {
-      if (ToLower(block.wavelength) == ToLower(name)) return &block;
-    }
-    return nullptr;
-  };
-  const auto one = [](const Block& block) {
-    Selected selected = {{{ToLower(block.wavelength) == "visible" ? "Y" : block.wavelength}, {}}, {block}, false};
-    if (block.nanometres) selected.channels = {{FormatDouble(*block.nanometres) + "nm"}, {*block.nanometres}};
-    return selected;
-  };
-  std::vector<std::string> names;
-  for (const Block& block : chosen.blocks) names.push_back(block.wavelength);
-  if (options.xml_wavelength) {
-    if (const Block* block = find(*options.xml_wavelength)) return one(*block);
-    FailAtLine(xml.file(), xml.Line(chosen.blocks.front().element),
-               "--xml-wavelength " + *options.xml_wavelength + ": the blocks '" + chosen.name +
-                   "' have the wavelengths " + Join(names));
-  }
-  if (const Block* visible = find("Visible")) {
-    const Block* first = find(structure.is_tree ? "CIE-u" : "CIE-X");
-    const Block* second = find(structure.is_tree ? "CIE-v" : "CIE-Z");
-    if (first == nullptr || second == nullptr) return one(*visible);
-    const Channels xyz = {{"X", "Y", "Z"}, {}};
-    if (structure.is_tree) return {xyz, {*visible, *first, *second}, true};
-    return {xyz, {*first, *visible, *second}, false};
-  }
-  if (chosen.blocks.size() == 1) return one(chosen.blocks.front());
-  std::vector<Block> sorted = chosen.blocks;
-  if (!std::all_of(sorted.begin(), sorted.end(), [](const Block& block) { return block.nanometres.has_value(); })) {
-    FailAtLine(xml.file(), xml.Line(chosen.blocks.front().element),
-               "the blocks '" + chosen.name + "' have the wavelengths " + Join(names) +
-                   ", none of them Visible; choose one with --xml-wavelength");
-  }
-  std::sort(sorted.begin(), sorted.end(), [](const Block& a, const Block& b) { return *a.nanometres < *b.nanometres; });
-  Selected selected;
-  for (const Block& block : sorted) {
-    selected.channels.names.push_back(FormatDouble(*block.nanometres) + "nm");
-    selected.channels.wavelengths_nm.push_back(*block.nanometres);
-    selected.blocks.push_back(block);
-  }
-  return selected;
-}
-
 // Directions from the file's patterns: `incident` is the patch or disk position of the light's propagation, `exit` that
 // of the scattered light, both with z > 0 and x, y in the front's coordinates.
 struct Pair {
@@ -230,10 +95,10 @@ Pair FromPatterns(const Vec3& incident, const Vec3& exit, Side side) {
   return {{incident.x, -incident.y, incident.z}, {-exit.x, exit.y, exit.z}};
 }
 
-std::vector<double> ReadMatrix(const XmlFile& xml, const Block& block, std::size_t count) {
+std::vector<double> ReadMatrix(const XmlFile& xml, const XmlBlock& block, std::size_t count) {
   const pugi::xml_node element = xml.OnlyChild(block.element, "ScatteringData");
   std::string_view text = xml.Text(element);
-  const std::size_t first_line = xml.Line(text.empty() ? std::string_view(xml.file().bytes.substr(0, 0)) : text);
+  const std::size_t first_line = text.empty() ? xml.Line(element) : xml.Line(text);
   const auto is_separator = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == ','; };
   if (count > (text.size() + 1) / 2) {
     xml.Fail(element, "<ScatteringData> has " + std::to_string(text.size()) + " bytes, too few for " +
@@ -262,8 +127,8 @@ std::vector<double> ReadMatrix(const XmlFile& xml, const Block& block, std::size
   return values;
 }
 
-Measurement ReadMatrices(const XmlFile& xml, pugi::xml_node definition, const Structure& structure,
-                         const Chosen& chosen, const Selected& selected) {
+Measurement ReadMatrices(const XmlFile& xml, pugi::xml_node definition, const XmlStructure& structure,
+                         const XmlSide& chosen, const XmlSelection& selected) {
   const std::vector<AngleBasis> bases = ReadBases(xml, definition);
   const AngleBasis& incident_basis = FindBasis(xml, selected.blocks[0].element, "ColumnAngleBasis", bases);
   const AngleBasis& exit_basis = FindBasis(xml, selected.blocks[0].element, "RowAngleBasis", bases);
@@ -273,7 +138,7 @@ Measurement ReadMatrices(const XmlFile& xml, pugi::xml_node definition, const St
                                              std::to_string(exit_basis.size()) + " patches, more than any file holds");
   }
   std::vector<std::vector<double>> values;
-  for (const Block& block : selected.blocks) {
+  for (const XmlBlock& block : selected.blocks) {
     if (&FindBasis(xml, block.element, "ColumnAngleBasis", bases) != &incident_basis ||
         &FindBasis(xml, block.element, "RowAngleBasis", bases) != &exit_basis) {
       xml.Fail(block.element, "the wavelength '" + Excerpt(block.wavelength) + "' has other angle bases than '" +
@@ -299,7 +164,7 @@ Measurement ReadMatrices(const XmlFile& xml, pugi::xml_node definition, const St
   return measurement;
 }
 
-TensorTree ReadTree(const XmlFile& xml, const Block& block, int rank) {
+TensorTree ReadTree(const XmlFile& xml, const XmlBlock& block, int rank) {
   const pugi::xml_node basis = xml.OnlyChild(block.element, "AngleBasis");
   if (ToLower(xml.Text(basis)) != "lbnl/shirley-chiu") {
     xml.Fail(basis,
@@ -329,9 +194,10 @@ std::optional<Ring> IsotropicRing(double low, double edge) {
   return Ring{(outer + inner) / 2, outer * outer - inner * inner};
 }
 
-Measurement ReadTrees(const XmlFile& xml, const Structure& structure, const Chosen& chosen, const Selected& selected) {
+Measurement ReadTrees(const XmlFile& xml, const XmlStructure& structure, const XmlSide& chosen,
+                      const XmlSelection& selected) {
   std::vector<TensorTree> trees;
-  for (const Block& block : selected.blocks) trees.push_back(ReadTree(xml, block, structure.rank));
+  for (const XmlBlock& block : selected.blocks) trees.push_back(ReadTree(xml, block, structure.rank));
   MeasurementBuilder builder(selected.channels);
   std::vector<double>& solid_angle = builder.measurement().samples.solid_angle;
   std::vector<double> values(selected.channels.size());
@@ -379,15 +245,15 @@ bool IsBsdfXml(std::string_view bytes) {
 
 Measurement ReadBsdfXml(const InputFile& file, const ReadOptions& options) {
   const XmlFile xml(file);
-  if (std::string_view(xml.root().name()) != "WindowElement") {
-    xml.Fail(xml.root(), std::string("the outermost element is <") + Excerpt(xml.root().name()) +
-                             ">; a BSDF file has <WindowElement>");
+  if (const std::string_view name = xml.root().name(); name != "WindowElement") {
+    xml.Fail(xml.root(),
+             std::string("the outermost element is <") + Excerpt(name) + ">; a BSDF file has <WindowElement>");
   }
   const pugi::xml_node layer = xml.OnlyChild(xml.OnlyChild(xml.root(), "Optical"), "Layer");
   const pugi::xml_node definition = xml.OnlyChild(layer, "DataDefinition");
-  const Structure structure = ReadStructure(xml, definition);
-  const Chosen chosen = ChooseSide(xml, layer, options);
-  const Selected selected = SelectWavelengths(xml, chosen, structure, options);
+  const XmlStructure structure = ReadXmlStructure(xml, definition);
+  const XmlSide chosen = ChooseXmlSide(xml, layer, options);
+  const XmlSelection selected = SelectXmlWavelengths(xml, chosen, structure, options);
   Measurement measurement = structure.is_tree ? ReadTrees(xml, structure, chosen, selected)
                                               : ReadMatrices(xml, definition, structure, chosen, selected);
   ScaleToMeanOne(&measurement.samples.solid_angle);
@@ -398,7 +264,7 @@ Measurement ReadBsdfXml(const InputFile& file, const ReadOptions& options) {
   measurement.conventions["xml-naming"] = options.xml_naming == XmlNaming::kWindow ? "window" : "plain";
   measurement.conventions["xml-wavelength"] = Join([&] {
     std::vector<std::string> names;
-    for (const Block& block : selected.blocks) names.push_back(block.wavelength);
+    for (const XmlBlock& block : selected.blocks) names.push_back(block.wavelength);
     return names;
   }());
   return measurement;

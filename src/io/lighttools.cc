@@ -171,6 +171,7 @@ Measurement ReadLightTools(const InputFile& file, const ReadOptions& options) {
                                         : "front or back; only reflection can be fitted"));
   }
   std::vector<double> wavelengths;
+  wavelengths.reserve(blocks.size());
   for (const Block& block : blocks) wavelengths.push_back(block.wavelength);
   std::sort(wavelengths.begin(), wavelengths.end());
   wavelengths.erase(std::unique(wavelengths.begin(), wavelengths.end()), wavelengths.end());
