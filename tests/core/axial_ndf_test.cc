@@ -43,7 +43,10 @@ TEST(AxialNdf, IsNormalisedByProjectedArea) {
   for (const AxialNdf& ndf : Distributions()) {
     SCOPED_TRACE(testing::Message() << static_cast<int>(ndf.family) << " " << ndf.parameter);
     EXPECT_NEAR(OverNormals(ndf, true, [](double c) { return c; }), 1, 1e-9);
-    EXPECT_NEAR(AxialSigma(ndf, 1), 1, 1e-13);
+    // The normalisation, and its derivative: none.
+    AxialGradient g;
+    EXPECT_NEAR(AxialSigma(ndf, 1, &g), 1, 1e-13);
+    EXPECT_NEAR(g.dparameter * ndf.parameter, 0, 1e-9);
     // The factor is that by which the unit-integral form was multiplied.
     const double total =
         OverNormals(ndf, true, [](double) { return 1; }) + OverNormals(ndf, false, [](double) { return 1; });

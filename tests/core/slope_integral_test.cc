@@ -93,7 +93,9 @@ TEST(GgxTriangle, AgainstTwoDimensionalQuadrature) {
 
 TEST(GgxTriangle, WholePlaneHalfPlaneAndNothing) {
   const double far = 1e9;
-  EXPECT_NEAR(GgxTriangleIntegral({{{-far, -far}, {far, -far}, {0, far}}}, 0.3, 0.01), 1, 1e-12);
+  GgxTriangleGradient whole;
+  EXPECT_NEAR(GgxTriangleIntegral({{{-far, -far}, {far, -far}, {0, far}}}, 0.3, 0.01, &whole), 1, 1e-12);
+  for (const double d : Flat(whole)) EXPECT_NEAR(d, 0, 1e-12);
   EXPECT_NEAR(GgxTriangleIntegral({{{-far, 0}, {far, 0}, {0, far}}}, 0.3, 0.01), 0.5, 1e-9);
   GgxTriangleGradient g;
   EXPECT_EQ(GgxTriangleIntegral({{{0, 0}, {1, 1}, {2, 2}}}, 1, 1, &g), 0);

@@ -108,6 +108,26 @@ TEST(Vndf, MeanGradientByDifferences) {
   }
 }
 
+// The density integrates to 1 for every parameter: E[d log pdf / dparameter] = 0.
+TEST(Vndf, NormalisationHasNoDerivative) {
+  const Vec3 psi = FromSpherical(1.1, 0.7);
+  const Ellipsoid e = {0.4, 0.25, 0.3, -0.2, 0.9};
+  const EllipsoidVndfSampler sampler(e, psi);
+  constexpr int kSide = 600;
+  std::array<double, kEllipsoidParameters> sum{}, absolute{};
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      double g[kEllipsoidParameters];
+      const double pdf = EllipsoidVndfPdf(e, psi, sampler.Sample((i + 0.5) / kSide, (j + 0.5) / kSide), g);
+      for (int k = 0; k < kEllipsoidParameters; ++k) {
+        sum[k] += g[k] / pdf;
+        absolute[k] += std::fabs(g[k] / pdf);
+      }
+    }
+  }
+  for (int k = 0; k < kEllipsoidParameters; ++k) EXPECT_NEAR(sum[k], 0, 1e-4 * absolute[k]) << k;
+}
+
 struct Configuration {
   Ellipsoid ellipsoid;
   double theta, phi;  // of psi
