@@ -19,7 +19,7 @@ TEST(MappedFile, ReadsBackWhatWasWritten) {
 
 TEST(MappedFile, NamesWhatItCannotRead) {
   EXPECT_THROW(MappedFile("/no/such/file"), InputError);
-  EXPECT_THROW(MappedFile(testing::TempDir()), InputError);
+  EXPECT_THROW(MappedFile{testing::TempDir()}, InputError);
 }
 
 TEST(Sha256Hex, AgreesWithThePublishedVector) {
