@@ -13,8 +13,8 @@ double NormSquared(const Ellipsoid& e, const EllipsoidFrame& frame, const FormWe
   if (gradient != nullptr) {
     (*gradient)[0] = 2.0 * e.alpha_x * p.x * p.x;
     (*gradient)[1] = 2.0 * e.alpha_y * p.y * p.y;
-    for (int k = 0; k < 3; ++k)
-      (*gradient)[static_cast<std::size_t>(2 + k)] = FormTurned(shape, p, p, frame.turn_axis(k));
+    for (std::size_t k = 0; k < 3; ++k)
+      (*gradient)[2 + k] = FormTurned(shape, p, p, frame.turn_axis(static_cast<int>(k)));
   }
   return Form(shape, p, p);
 }

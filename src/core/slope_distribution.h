@@ -26,14 +26,14 @@ struct SlopeDistribution {
 
 // The same ellipse as mean slope and Q^-1, and back; jacobian as in off_center.h, inputs and outputs in each struct's
 // order.
-OffCenter OffCenterFromSlopes(const SlopeDistribution& distribution, double jacobian[25] = nullptr);
+OffCenter OffCenterFromSlopes(const SlopeDistribution& s, double jacobian[25] = nullptr);
 SlopeDistribution SlopesFromOffCenter(SlopeKind kind, const OffCenter& off_center);
 
 // Density of slopes, int P22 dx dy = 1.
-double SlopeP22(const SlopeDistribution& distribution, double x, double y, double* gradient = nullptr);
+double SlopeP22(const SlopeDistribution& s, double x, double y, double* gradient = nullptr);
 
 // D(wm) = P22 / wm.z^4 [eq 64], 1/sr; 0 for wm.z <= 0. dD_dwm: derivative in the components as free variables.
-double SlopeDistributionD(const SlopeDistribution& distribution, const Vec3& wm, double* gradient = nullptr,
+double SlopeDistributionD(const SlopeDistribution& s, const Vec3& wm, double* gradient = nullptr,
                           Vec3* dD_dwm = nullptr);
 
 // Definition of D as printed (eq 64, 70/84, 67/81, 95) for any scalar; p = alpha_x, alpha_y, r, slope_x, slope_y.

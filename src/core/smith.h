@@ -22,8 +22,7 @@ struct ProjectedSlopes {
 
 // c, q and a with gradients dc, dq (5 each). c is summed with error terms: exact to rounding also where its terms
 // cancel.
-ProjectedSlopes ProjectSlopes(const SlopeDistribution& distribution, const Vec3& u, double* dc = nullptr,
-                              double* dq = nullptr);
+ProjectedSlopes ProjectSlopes(const SlopeDistribution& s, const Vec3& u, double* dc = nullptr, double* dq = nullptr);
 
 // Lambda(a) of [Heitz eq 69, 72] for any a != 0, its derivative; +inf gives 0.
 double SmithLambdaOfA(SlopeKind kind, double a, double* dLambda_da = nullptr);
