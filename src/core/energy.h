@@ -3,7 +3,7 @@
 //
 // [Heitz] Heitz 2014 eq 31, 35-37, 102-105. All integrals run over the visible normals (visible_quadrature.h) instead
 // of the reflected directions: di = 4 (wo.m) dm. `tolerance` is relative; at the default the reference table is met to
-// 1e-10. A call takes milliseconds: these are for reports, tests and tables, not for the inner loop of a fit. wo above
+// 5e-15. A call takes milliseconds: these are for reports, tests and tables, not for the inner loop of a fit. wo above
 // the horizon. Gradients are in the distribution's parameters; null skips them (the quadrature then refines for the
 // value alone: same value within the tolerance, not bit for bit).
 #pragma once
