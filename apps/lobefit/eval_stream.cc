@@ -28,13 +28,13 @@ class StreamLines {
   bool Next(std::string_view* line) {
     std::size_t searched = 0;
     while (true) {
-      const std::string_view rest = std::string_view(buffer_).substr(begin_);
+      const std::string_view rest = std::string_view{buffer_}.substr(begin_);
       const std::size_t end = rest.find('\n', searched);
       if (end != std::string_view::npos) return Take(rest.substr(0, end), end + 1, line);
       searched = rest.size();
       if (!Fill()) break;
     }
-    const std::string_view rest = std::string_view(buffer_).substr(begin_);
+    const std::string_view rest = std::string_view{buffer_}.substr(begin_);
     return !rest.empty() && Take(rest, rest.size(), line);
   }
   std::size_t number() const { return number_; }

@@ -19,7 +19,7 @@ std::filesystem::path RecipeFolder() {
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
   if (!error) {
-    const std::filesystem::path installed = program.parent_path().parent_path() / "share" / "lobefit" / "fits";
+    std::filesystem::path installed = program.parent_path().parent_path() / "share" / "lobefit" / "fits";
     if (std::filesystem::is_directory(installed, error)) return installed;
   }
   return LOBEFIT_SOURCE_FITS;

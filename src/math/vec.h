@@ -55,7 +55,7 @@ T Norm(const Vec3T<T>& a) {
 // Domain: a != 0.
 template <class T>
 Vec3T<T> Normalized(const Vec3T<T>& a) {
-  return (T(1.0) / Norm(a)) * a;
+  return (static_cast<T>(1.0) / Norm(a)) * a;
 }
 
 // Row-major 3x3 matrix.
