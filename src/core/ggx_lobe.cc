@@ -1,6 +1,20 @@
 #include "lobefit/core/ggx_lobe.h"
 
+#include <algorithm>
 #include <cmath>
+
+#ifndef LOBEFIT_CORE_GGX_LOBE_ARRAYS
+#define LOBEFIT_CORE_GGX_LOBE_ARRAYS
+namespace lobefit {
+// Pointers of one call, the same for every target.
+struct GgxArrays {
+  const double* uniform;
+  const double* const* in;
+  double* const* out;
+  std::size_t count;
+};
+}  // namespace lobefit
+#endif
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lobefit/core/ggx_lobe.cc"
@@ -16,7 +30,6 @@ using D64 = hn::ScalableTag<double>;
 using V64 = hn::Vec<D64>;
 
 HWY_INLINE V64 Root(V64 x) { return hn::Sqrt(x); }
-HWY_INLINE V64 Larger(V64 a, V64 b) { return hn::Max(a, b); }
 HWY_INLINE V64 Constant(V64 /*like*/, double value) { return hn::Set(D64(), value); }
 HWY_INLINE V64 SelectNegative(V64 x, V64 yes, V64 no) { return hn::IfThenElse(hn::Lt(x, hn::Zero(D64())), yes, no); }
 
@@ -28,66 +41,89 @@ GgxLobeUniform<V64> Broadcast(const double* u) {
           hn::Set(d, u[4]), hn::Set(d, u[5]), hn::Set(d, u[6]), hn::Set(d, u[7])};
 }
 
+// What is computed for a vector of samples: inputs and outputs in the order of their arrays.
 template <bool kGradient, GgxMasking kMasking>
-void Loop(const DirectionArrays& in, const double* uniform, double* specular, double* cos_d, double* gradient) {
+struct LobeKernel {
+  static constexpr std::size_t kInputs = 6, kOutputs = kGradient ? 7 : 2;
+  static HWY_INLINE void Evaluate(const GgxLobeUniform<V64>& p, const V64* x, V64* y) {
+    y[0] = GgxSpecular<kGradient, kMasking>(p, x[0], x[1], x[2], x[3], x[4], x[5], &y[1], y + 2);
+  }
+};
+
+template <bool kGradient>
+struct DistributionKernel {
+  static constexpr std::size_t kInputs = 3, kOutputs = kGradient ? 6 : 1;
+  static HWY_INLINE void Evaluate(const GgxLobeUniform<V64>& p, const V64* x, V64* y) {
+    y[0] = GgxDistribution<kGradient>(p, x[0], x[1], x[2], y + 1);
+  }
+};
+
+template <bool kGradient, bool kClamp>
+struct MaskingKernel {
+  static constexpr std::size_t kInputs = 3, kOutputs = kGradient ? 6 : 1;
+  static HWY_INLINE void Evaluate(const GgxLobeUniform<V64>& p, const V64* x, V64* y) {
+    y[0] = GgxMaskingG1<kGradient, kClamp>(p, x[0], x[1], x[2], y + 1);
+  }
+};
+
+template <class Kernel>
+void Loop(const GgxArrays& arrays) {
+  constexpr std::size_t kIn = Kernel::kInputs, kOut = Kernel::kOutputs;
   const D64 d;
-  const GgxLobeUniform<V64> p = Broadcast(uniform);
-  const std::size_t lanes = hn::Lanes(d);
+  const GgxLobeUniform<V64> p = Broadcast(arrays.uniform);
+  const std::size_t lanes = hn::Lanes(d), count = arrays.count;
+  const double* in[kIn];
+  double* out[kOut];
+  for (std::size_t j = 0; j < kIn; ++j) in[j] = arrays.in[j];
+  for (std::size_t j = 0; j < kOut; ++j) out[j] = arrays.out[j];
+  // One more output than is kept: without a gradient the kernels still form a pointer behind the value.
+  V64 x[kIn], y[kOut + 1];
   std::size_t i = 0;
-  V64 cos, g[5];
-  for (; i + lanes <= in.count; i += lanes) {
-    const V64 value = GgxSpecular<kGradient, kMasking>(p, hn::LoadU(d, in.wi_x + i), hn::LoadU(d, in.wi_y + i),
-                                                       hn::LoadU(d, in.wi_z + i), hn::LoadU(d, in.wo_x + i),
-                                                       hn::LoadU(d, in.wo_y + i), hn::LoadU(d, in.wo_z + i), &cos, g);
-    hn::StoreU(value, d, specular + i);
-    hn::StoreU(cos, d, cos_d + i);
-    if constexpr (kGradient) {
-      for (std::size_t j = 0; j < 5; ++j) hn::StoreU(g[j], d, gradient + j * in.count + i);
-    }
+  for (; i + lanes <= count; i += lanes) {
+    for (std::size_t j = 0; j < kIn; ++j) x[j] = hn::LoadU(d, in[j] + i);
+    Kernel::Evaluate(p, x, y);
+    for (std::size_t j = 0; j < kOut; ++j) hn::StoreU(y[j], d, out[j] + i);
   }
   // The last samples, fewer than a vector: padded with a harmless direction.
-  if (i == in.count) return;
-  constexpr std::size_t kMaxLanes = hn::MaxLanes(D64());
-  double pad[6][kMaxLanes], out[7][kMaxLanes];
-  const double* from[6] = {in.wi_x, in.wi_y, in.wi_z, in.wo_x, in.wo_y, in.wo_z};
-  for (std::size_t j = 0; j < 6; ++j) {
-    for (std::size_t k = 0; k < lanes; ++k) pad[j][k] = i + k < in.count ? from[j][i + k] : (j % 3 == 2 ? 1.0 : 0.0);
+  if (i == count) return;
+  double pad[hn::MaxLanes(D64())];
+  for (std::size_t j = 0; j < kIn; ++j) {
+    for (std::size_t k = 0; k < lanes; ++k) pad[k] = i + k < count ? in[j][i + k] : (j % 3 == 2 ? 1.0 : 0.0);
+    x[j] = hn::LoadU(d, pad);
   }
-  const V64 value =
-      GgxSpecular<kGradient, kMasking>(p, hn::LoadU(d, pad[0]), hn::LoadU(d, pad[1]), hn::LoadU(d, pad[2]),
-                                       hn::LoadU(d, pad[3]), hn::LoadU(d, pad[4]), hn::LoadU(d, pad[5]), &cos, g);
-  hn::StoreU(value, d, out[0]);
-  hn::StoreU(cos, d, out[1]);
-  if constexpr (kGradient) {
-    for (std::size_t j = 0; j < 5; ++j) hn::StoreU(g[j], d, out[2 + j]);
-  }
-  for (std::size_t k = 0; i + k < in.count; ++k) {
-    specular[i + k] = out[0][k];
-    cos_d[i + k] = out[1][k];
-    if constexpr (kGradient) {
-      for (std::size_t j = 0; j < 5; ++j) gradient[j * in.count + i + k] = out[2 + j][k];
-    }
+  Kernel::Evaluate(p, x, y);
+  for (std::size_t j = 0; j < kOut; ++j) {
+    hn::StoreU(y[j], d, pad);
+    for (std::size_t k = 0; i + k < count; ++k) out[j][i + k] = pad[k];
   }
 }
 
-template <GgxMasking kMasking>
-void WithMasking(const DirectionArrays& in, const double* uniform, double* specular, double* cos_d, double* gradient) {
-  if (gradient != nullptr) {
-    Loop<true, kMasking>(in, uniform, specular, cos_d, gradient);
-  } else {
-    Loop<false, kMasking>(in, uniform, specular, cos_d, nullptr);
-  }
-}
-
-void GgxLobeArrays(const DirectionArrays& in, const double* uniform, int masking, double* specular, double* cos_d,
-                   double* gradient) {
-  switch (static_cast<Masking>(masking)) {
+template <bool kGradient>
+void LobeLoop(const GgxArrays& arrays, Masking masking) {
+  switch (masking) {
     case Masking::kSmithSeparable:
-      return WithMasking<GgxMasking::kClamped>(in, uniform, specular, cos_d, gradient);
+      return Loop<LobeKernel<kGradient, GgxMasking::kClamped>>(arrays);
     case Masking::kSmithUnclamped:
-      return WithMasking<GgxMasking::kUnclamped>(in, uniform, specular, cos_d, gradient);
+      return Loop<LobeKernel<kGradient, GgxMasking::kUnclamped>>(arrays);
     case Masking::kSmithHeight:
-      return WithMasking<GgxMasking::kHeight>(in, uniform, specular, cos_d, gradient);
+      return Loop<LobeKernel<kGradient, GgxMasking::kHeight>>(arrays);
+  }
+}
+
+void LobeArrays(const GgxArrays& arrays, int masking, bool gradient) {
+  gradient ? LobeLoop<true>(arrays, static_cast<Masking>(masking))
+           : LobeLoop<false>(arrays, static_cast<Masking>(masking));
+}
+
+void DistributionArrays(const GgxArrays& arrays, bool gradient) {
+  gradient ? Loop<DistributionKernel<true>>(arrays) : Loop<DistributionKernel<false>>(arrays);
+}
+
+void MaskingArrays(const GgxArrays& arrays, bool clamp, bool gradient) {
+  if (clamp) {
+    gradient ? Loop<MaskingKernel<true, true>>(arrays) : Loop<MaskingKernel<false, true>>(arrays);
+  } else {
+    gradient ? Loop<MaskingKernel<true, false>>(arrays) : Loop<MaskingKernel<false, false>>(arrays);
   }
 }
 
@@ -102,8 +138,6 @@ namespace {
 namespace scalar {
 
 double Root(double x) { return std::sqrt(x); }
-// The comparison of the vector instruction: the second operand where either is not a number.
-double Larger(double a, double b) { return a > b ? a : b; }
 double Constant(double /*like*/, double value) { return value; }
 double SelectNegative(double x, double yes, double no) { return x < 0.0 ? yes : no; }
 
@@ -116,15 +150,62 @@ scalar::GgxLobeUniform<double> Uniform(const SlopeCoordinates& shape) {
   return {shape.v[0], shape.v[1], a, shape.v[3], c, 1 / a, 1 / c, 0.25 * kInvPi / (a * c)};
 }
 
-HWY_EXPORT(GgxLobeArrays);
+HWY_EXPORT(LobeArrays);
+HWY_EXPORT(DistributionArrays);
+HWY_EXPORT(MaskingArrays);
+
+// The uniform as the targets take it.
+struct Packed {
+  explicit Packed(const SlopeCoordinates& shape) {
+    const scalar::GgxLobeUniform<double> p = Uniform(shape);
+    const double all[8] = {p.slope_x, p.slope_y, p.a, p.b, p.c, p.inv_a, p.inv_c, p.quarter_inv_pi_det};
+    std::copy(all, all + 8, values);
+  }
+  double values[8];
+};
 
 }  // namespace
 
 void GgxLobe(const DirectionArrays& directions, const SlopeCoordinates& shape, Masking masking, double* specular,
              double* cos_d, double* gradient) {
+  const Packed uniform(shape);
+  const DirectionArrays& from = directions;
+  const double* in[6] = {from.wi_x, from.wi_y, from.wi_z, from.wo_x, from.wo_y, from.wo_z};
+  double* out[7] = {specular, cos_d};
+  for (std::size_t j = 0; gradient != nullptr && j < 5; ++j) out[2 + j] = gradient + j * from.count;
+  HWY_DYNAMIC_DISPATCH(LobeArrays)
+  ({uniform.values, in, out, from.count}, static_cast<int>(masking), gradient != nullptr);
+}
+
+void GgxD(const VectorArrays& wm, const SlopeCoordinates& shape, double* D, double* gradient) {
+  const Packed uniform(shape);
+  const double* in[3] = {wm.x, wm.y, wm.z};
+  double* out[6] = {D};
+  for (std::size_t j = 0; gradient != nullptr && j < 5; ++j) out[1 + j] = gradient + j * wm.count;
+  HWY_DYNAMIC_DISPATCH(DistributionArrays)({uniform.values, in, out, wm.count}, gradient != nullptr);
+}
+
+void GgxG1(const VectorArrays& u, const SlopeCoordinates& shape, bool clamp, double* G1, double* gradient) {
+  const Packed uniform(shape);
+  const double* in[3] = {u.x, u.y, u.z};
+  double* out[6] = {G1};
+  for (std::size_t j = 0; gradient != nullptr && j < 5; ++j) out[1 + j] = gradient + j * u.count;
+  HWY_DYNAMIC_DISPATCH(MaskingArrays)({uniform.values, in, out, u.count}, clamp, gradient != nullptr);
+}
+
+double GgxD(const Vec3& wm, const SlopeCoordinates& shape, double gradient[5]) {
   const scalar::GgxLobeUniform<double> p = Uniform(shape);
-  const double uniform[8] = {p.slope_x, p.slope_y, p.a, p.b, p.c, p.inv_a, p.inv_c, p.quarter_inv_pi_det};
-  HWY_DYNAMIC_DISPATCH(GgxLobeArrays)(directions, uniform, static_cast<int>(masking), specular, cos_d, gradient);
+  return gradient != nullptr ? scalar::GgxDistribution<true>(p, wm.x, wm.y, wm.z, gradient)
+                             : scalar::GgxDistribution<false>(p, wm.x, wm.y, wm.z, gradient);
+}
+
+double GgxG1(const Vec3& u, const SlopeCoordinates& shape, bool clamp, double gradient[5]) {
+  const scalar::GgxLobeUniform<double> p = Uniform(shape);
+  const auto evaluate = [&]<bool kGradient, bool kClamp>() {
+    return scalar::GgxMaskingG1<kGradient, kClamp>(p, u.x, u.y, u.z, gradient);
+  };
+  if (gradient != nullptr) return clamp ? evaluate.operator()<true, true>() : evaluate.operator()<true, false>();
+  return clamp ? evaluate.operator()<false, true>() : evaluate.operator()<false, false>();
 }
 
 double GgxLobe(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Masking masking, double* cos_d,

@@ -1,4 +1,5 @@
-// Specular factor of GGX lobes for arrays of samples, in SIMD with run-time dispatch, and the same for one sample.
+// GGX lobes for arrays of samples, in SIMD with run-time dispatch, and the same for one sample: the specular factor of
+// the BRDF, D and G1, each with its gradient.
 #pragma once
 
 #include <cstddef>
@@ -31,5 +32,20 @@ void GgxLobe(const DirectionArrays& directions, const SlopeCoordinates& shape, M
 // One sample, by the same operations in the same order: the same bits.
 double GgxLobe(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Masking masking, double* cos_d,
                double gradient[5]);
+
+// One vector a sample, structure of arrays.
+struct VectorArrays {
+  const double* x;
+  const double* y;
+  const double* z;
+  std::size_t count;
+};
+
+// The factors alone. D(wm), 1/sr, for unit wm, 0 below the horizon [Walter eq 1]; G1(u) = u_z / sigma(u) for u_z > 0,
+// at most 1 if `clamp` [Walter eq 6]. Gradient as above; the functions of one sample give the same bits.
+void GgxD(const VectorArrays& wm, const SlopeCoordinates& shape, double* D, double* gradient);
+double GgxD(const Vec3& wm, const SlopeCoordinates& shape, double gradient[5]);
+void GgxG1(const VectorArrays& u, const SlopeCoordinates& shape, bool clamp, double* G1, double* gradient);
+double GgxG1(const Vec3& u, const SlopeCoordinates& shape, bool clamp, double gradient[5]);
 
 }  // namespace lobefit
