@@ -222,7 +222,8 @@ Measurement ReadBinary(const InputFile& file, const AltaHeader& header, AltaLayo
                    " more bytes; it is cut off");
   }
   const std::string_view trailer = Trim(file.bytes.substr(header.end + *bytes));
-  if (trailer != "#END_STREAM") {
+  // Older files end with their data.
+  if (header.end + *bytes != file.bytes.size() && trailer != "#END_STREAM") {
     FailAtByte(file, header.end + *bytes,
                "found '" + Excerpt(trailer) +
                    "' where #END_STREAM should end the data; "
@@ -257,12 +258,13 @@ Measurement ReadAlta(const InputFile& file, const ReadOptions& options) {
   const AltaHeader header = ReadAltaHeader(file);
   AltaLayout layout = ReadAltaLayout(file, header, options);
   const AltaEntry* format = FindKey(header, "FORMAT");
-  if (!header.binary && format != nullptr && format->value == "binary") {
+  const bool binary = format != nullptr && format->value == "binary";
+  if (binary && !header.stream && !header.ended) {
     FailAtLine(file, std::max<std::size_t>(header.end_line, 1),
-               "the header says #FORMAT binary, but has no #BEGIN_STREAM");
+               "the header says #FORMAT binary, but is not ended by #BEGIN_STREAM or #ALTA HEADER END");
   }
   Measurement measurement =
-      header.binary ? ReadBinary(file, header, &layout, options) : ReadText(file, header, &layout, options);
+      binary || header.stream ? ReadBinary(file, header, &layout, options) : ReadText(file, header, &layout, options);
   measurement.isotropic = layout.input->isotropic;
   measurement.conventions["angle-unit"] = "rad (format)";
   measurement.conventions["value-kind"] = Name(layout.kind) + (layout.kind_from_option ? "" : " (header)");

@@ -11,10 +11,12 @@ namespace {
 
 constexpr std::size_t kMostOutputs = 4096;
 
-// Both spellings of the end mark: "#ALTA HEADER END" and "#ALTA END HEADER".
-bool IsEndMark(const std::vector<std::string_view>& words) {
-  return words.size() == 3 && words[0] == "ALTA" &&
-         ((words[1] == "HEADER" && words[2] == "END") || (words[1] == "END" && words[2] == "HEADER"));
+// "#ALTA HEADER END" (code), "#ALTA END HEADER" (manual) and "#ALTA_END_HEADER" (files), and the like for the
+// beginning.
+bool IsMark(std::string_view line, const char* which) {
+  const std::string mark = ToLower(Trim(line)), word = which;
+  return mark == "alta header " + word || mark == "alta " + word + " header" || mark == "alta_header_" + word ||
+         mark == "alta_" + word + "_header";
 }
 
 void ReadDim(const InputFile& file, const AltaHeader& header, AltaLayout* layout, std::size_t* inputs) {
@@ -120,14 +122,19 @@ AltaHeader ReadAltaHeader(const InputFile& file) {
     line.remove_prefix(1);
     const std::vector<std::string_view> words = SplitBlanks(line);
     if (words.empty()) continue;
-    const bool end_mark = IsEndMark(words), begin_stream = words[0] == "BEGIN_STREAM";
-    if (end_mark || begin_stream) {
-      header.binary = begin_stream;
+    if (IsMark(line, "begin")) continue;
+    header.ended = IsMark(line, "end");
+    header.stream = words[0] == "BEGIN_STREAM";
+    if (header.ended || header.stream) {
       header.end = lines.offset();
       header.end_line = lines.line_number();
+      constexpr std::string_view kBeginStream = "#BEGIN_STREAM\n";
+      if (header.ended && file.bytes.substr(header.end, kBeginStream.size()) == kBeginStream) {
+        header.stream = true;
+        header.end += kBeginStream.size();
+      }
       break;
     }
-    if (words[0] == "ALTA") continue;
     const std::string key(words[0]);
     const auto [entry, is_new] =
         header.keys.emplace(key, AltaEntry{std::string(Trim(line.substr(key.size()))), lines.line_number()});

@@ -18,7 +18,8 @@ struct AltaEntry {
 
 struct AltaHeader {
   std::map<std::string, AltaEntry> keys;
-  bool binary = false;
+  bool ended = false;        // by an end mark
+  bool stream = false;       // by #BEGIN_STREAM
   std::size_t end = 0;       // offset of the first byte after the header
   std::size_t end_line = 0;  // number of its last line
 };

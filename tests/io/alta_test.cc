@@ -41,8 +41,8 @@ TEST(Alta, CosineFactorIsTheOutgoingOne) {
   EXPECT_NEAR(ReadBytes(ReadAlta, bytes, options).samples.values[0][0], 2 / kPi, 1e-15);
 }
 
-TEST(Alta, BothEndMarksEndTheHeader) {
-  for (const char* mark : {"#ALTA HEADER END\n", "#ALTA END HEADER\n"}) {
+TEST(Alta, AllEndMarksEndTheHeader) {
+  for (const char* mark : {"#ALTA HEADER END\n", "#ALTA END HEADER\n", "#ALTA_END_HEADER\n"}) {
     // After the mark a line '#...' is a comment, whatever it looks like.
     const Measurement m =
         ReadBytes(ReadAlta, "#ALTA HEADER BEGIN\n" +
@@ -335,6 +335,21 @@ TEST(Alta, BinaryOfBothByteOrders) {
     ExpectVector(m.samples.wo(0), {-std::sin(0.25), 0, std::cos(0.25)});
     EXPECT_EQ(m.samples.values[0], (std::vector<double>{7, 8}));
   }
+}
+
+// As older versions wrote it: an end mark in place of #BEGIN_STREAM, nothing behind the data.
+TEST(Alta, BinaryMayBeEndedByTheMarkAndTheFile) {
+  std::string bytes = Binary("1", "little", Doubles({0.5, -0.25, 0, 7}, false));
+  bytes.erase(bytes.rfind("\n#END_STREAM"));
+  const std::string begin = "#BEGIN_STREAM\n";
+  std::string both = bytes;
+  both.insert(both.find(begin), "#ALTA HEADER END\n");
+  EXPECT_EQ(ReadBytes(ReadAlta, both).samples.values[0][0], 7);
+  bytes.replace(bytes.find(begin), begin.size(), "#ALTA_END_HEADER\n");
+  EXPECT_EQ(ReadBytes(ReadAlta, bytes).samples.values[0][0], 7);
+  EXPECT_EQ(
+      ErrorOf(ReadAlta, bytes + "x"),
+      "byte 202: found 'x' where #END_STREAM should end the data; #SAMPLE_COUNT, #DIM or #VS does not fit the file");
 }
 
 TEST(Alta, BinaryIntervalsFollowTheValuesEndByEnd) {
