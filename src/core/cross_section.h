@@ -128,7 +128,7 @@ T RingCrossSectionFormula(const T& u, const T& u_n) {
   using std::sqrt;
   const T t = u * u_n, s = sqrt((1.0 - u * u) * (1.0 - u_n * u_n));
   if (t >= s) return t;
-  if (t <= -s) return T(0.0);
+  if (t <= -s) return 0.0 * t;
   return (sqrt(s * s - t * t) + t * acos(-t / s)) / kPi;
 }
 

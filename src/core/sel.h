@@ -97,7 +97,7 @@ T SelLobeFormula(const T& alpha_x, const T& alpha_y, const Vec3T<T>& v) {
   const T q = px * px + py * py;
   const T u = sqrt(a * q + v.z * v.z);
   T inverse_distance;  // twice the inverse of the distance to the ellipsoid
-  if (v.z < T(0.0)) {
+  if (v.z < 0.0) {
     const T s = u - v.z;
     inverse_distance = a * q / s + s / a;
   } else {

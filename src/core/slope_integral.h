@@ -47,7 +47,7 @@ template <class T>
 T GgxTriangleIntegralFormula(const std::array<Vec2T<T>, 3>& vertices, const T& alpha_x, const T& alpha_y) {
   using std::atan2;
   using std::sqrt;
-  T sum = T(0.0);
+  T sum(0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec2T<T>&p = vertices[i], &q = vertices[(i + 1) % 3];
     const T ax = p.x / alpha_x, ay = p.y / alpha_y, bx = q.x / alpha_x, by = q.y / alpha_y;
@@ -55,7 +55,7 @@ T GgxTriangleIntegralFormula(const std::array<Vec2T<T>, 3>& vertices, const T& a
     const T n = sqrt(cross * cross + (ax - bx) * (ax - bx) + (ay - by) * (ay - by));
     sum = sum + cross * atan2(n, 1.0 + ax * bx + ay * by) / n;
   }
-  return (sum < T(0.0) ? -sum : sum) / (2.0 * kPi);
+  return (sum < 0.0 ? -sum : sum) / (2.0 * kPi);
 }
 
 }  // namespace lobefit
