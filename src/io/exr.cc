@@ -29,6 +29,8 @@ namespace {
 constexpr char kMagic[] = {0x76, 0x2f, 0x31, 0x01};
 constexpr int kLargestSide = 8192;
 constexpr std::size_t kMostValues = std::size_t{1} << 26;
+// No compression of OpenEXR packs even a constant image closer than this.
+constexpr std::size_t kMostValuesPerByte = 2048;
 
 class MemoryStream : public Imf::IStream {
  public:
@@ -219,11 +221,13 @@ Image ReadPixels(const InputFile& file, Imf::InputFile& exr, const std::vector<I
   const Imath::Box2i window = exr.header().dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1,
                      height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide ||
-      static_cast<std::size_t>(width * height) > kMostValues / channels.size()) {
+  const bool sane = width >= 1 && height >= 1 && width <= kLargestSide && height <= kLargestSide;
+  const std::size_t values = sane ? static_cast<std::size_t>(width * height) * channels.size() : kMostValues + 1;
+  if (values > kMostValues || values / kMostValuesPerByte > file.bytes.size()) {
     Fail(file, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels x " +
-                   std::to_string(channels.size()) + " channels; at most " + std::to_string(kLargestSide) +
-                   " a side and 2^26 values are allowed");
+                   std::to_string(channels.size()) + " channels in " + std::to_string(file.bytes.size()) +
+                   " bytes; at most " + std::to_string(kLargestSide) + " a side, 2^26 values and " +
+                   std::to_string(kMostValuesPerByte) + " values a byte are allowed");
   }
   Image image = {static_cast<std::size_t>(width), static_cast<std::size_t>(height), {}};
   image.planes.assign(channels.size(), std::vector<float>(image.width * image.height));
@@ -304,7 +308,12 @@ Measurement ReadExr(const InputFile& file, const ReadOptions& options) {
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    Fail(file, "cannot be read as an OpenEXR image: " + Excerpt(error.what(), 200) + "; fetch the file again");
+    // OpenEXR puts the stream's name in front of its reason.
+    constexpr std::string_view kPrefix = "Cannot read image file \"memory\". ";
+    std::string_view reason = error.what();
+    if (reason.starts_with(kPrefix)) reason.remove_prefix(kPrefix.size());
+    while (reason.ends_with('.')) reason.remove_suffix(1);
+    Fail(file, "cannot be read as an OpenEXR image: " + Excerpt(reason, 200) + "; fetch the file again");
   }
 }
 

@@ -23,7 +23,7 @@ double IncidenceMeasure(const std::vector<float>& theta, std::size_t i) {
   const auto at = [&](std::size_t k) { return static_cast<double>(theta[k]); };
   const double low = i == 0 ? at(0) : 0.5 * (at(i - 1) + at(i));
   const double high = i + 1 == theta.size() ? at(i) : 0.5 * (at(i) + at(i + 1));
-  return std::cos(low) - std::cos(high);
+  return std::max(std::cos(low) - std::cos(high), 1e-12);  // angles that float32 hardly tells apart
 }
 
 // Directions nearer to the horizon than this (0.06 degrees) have no f_r: it is the table's value over a cosine that the
