@@ -20,7 +20,7 @@ constexpr std::array<double, 4> kWidths = {3, 8, 15, 25};  // degrees about phi_
 constexpr std::size_t kEnough = 4000, kMostPoints = 30000;
 
 struct AngleImage {
-  FieldImage image = FieldImage(kSize, kSize);
+  std::shared_ptr<FieldImage> image = std::make_shared<FieldImage>(kSize, kSize);
   double width = 0;  // degrees about phi_d = 90
   double cover = 0;
 };
@@ -67,7 +67,7 @@ std::shared_ptr<AngleImage> Make(const ReportData& data) {
   if (points.empty()) return slices;
   const ScatterField field(std::move(points), 2, 0.02F);
   int possible = 0;
-  std::vector<std::uint8_t> near(static_cast<std::size_t>(kSize * kSize));
+  std::vector<std::uint8_t> near(slices->image->measured.size());
   std::vector<double> f_r(data.channels());
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
@@ -76,9 +76,9 @@ std::shared_ptr<AngleImage> Make(const ReportData& data) {
       FromHalfDifference({theta_h, 0, theta_d, kPi / 2}, &wi, &wo);
       if (wi.z <= 0.02 || wo.z <= 0.02) continue;
       ++possible;
-      const std::size_t pixel = slices->image.At(column, row);
+      const std::size_t pixel = slices->image->At(column, row);
       data.fitted.Evaluate(wi, wo, f_r.data());
-      slices->image.fitted[pixel] = static_cast<float>(data.Display(f_r));
+      slices->image->fitted[pixel] = static_cast<float>(data.Display(f_r));
       std::array<std::uint32_t, 4> indices;
       std::array<float, 4> weights;
       bool is_near = false;
@@ -91,11 +91,11 @@ std::shared_ptr<AngleImage> Make(const ReportData& data) {
         value += weights[k] * values[indices[k]];
         ratio += weights[k] * ratios[indices[k]];
       }
-      slices->image.measured[pixel] = value;
-      slices->image.log_ratio[pixel] = ratio;
+      slices->image->measured[pixel] = value;
+      slices->image->log_ratio[pixel] = ratio;
     }
   }
-  slices->cover = static_cast<double>(KeepNear(near, &slices->image)) / std::max(1, possible);
+  slices->cover = static_cast<double>(KeepNear(near, slices->image.get())) / std::max(1, possible);
   return slices;
 }
 
@@ -104,14 +104,14 @@ constexpr double kLeft = 52, kGap = 22;
 double Side(double width) { return std::min(300.0, (width - kLeft - 2 * kGap) / 3); }
 
 void Draw(const AngleImage& slices, Canvas* canvas, const Box& content) {
-  const FieldScale scale({&slices.image});
+  const FieldScale scale({slices.image.get()});
   const double size = Side(content.width), used = 3 * size + 2 * kGap,
                left = content.x + kLeft + std::max(0.0, (content.width - kLeft - used) / 2);
   const auto value = [&scale](float v) { return scale.ValueColor(v); };
   const auto ratio = [&scale](float v) { return scale.RatioColor(v); };
-  const std::array<cv::Mat, 3> pictures = {Picture(slices.image.measured, kSize, kSize, value),
-                                           Picture(slices.image.fitted, kSize, kSize, value),
-                                           Picture(slices.image.log_ratio, kSize, kSize, ratio)};
+  const std::array<cv::Mat, 3> pictures = {Picture(slices.image->measured, kSize, kSize, value),
+                                           Picture(slices.image->fitted, kSize, kSize, value),
+                                           Picture(slices.image->log_ratio, kSize, kSize, ratio)};
   const std::array<const char*, 3> names = {"measured", "fitted", "measured / fitted"};
   for (std::size_t k = 0; k < 3; ++k) {
     const Box frame = {left + static_cast<double>(k) * (size + kGap), content.y + 22, size, size};
@@ -140,6 +140,7 @@ std::optional<Panel> BurleyPanel(const ReportData& data) {
                    Join({"φ_d within ", Number(slices->width, 2), "° of 90°;  grey: no sample near"}, "")}};
   panel.height = [](Canvas*, double width) { return 22 + Side(width) + 48 + FieldScale::kHeight; };
   panel.draw = [slices](Canvas* canvas, const Box& content) { Draw(*slices, canvas, content); };
+  panel.fields = {{"half_difference.phi_d_90", slices->image}};
   return panel;
 }
 

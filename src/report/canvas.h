@@ -2,6 +2,7 @@
 // page unit is `scale` pixels; y runs down. Lines and polygons are OpenCV's, text is FreeType's.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -27,6 +28,11 @@ struct Box {
   double bottom() const { return y + height; }
   Point center() const { return {x + width / 2, y + height / 2}; }
 };
+
+// Index of a pixel or cell in a row-major picture.
+inline std::size_t PixelIndex(int column, int row, int width) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+}
 
 // The box without `left`, ... of its border.
 Box Inset(const Box& box, double left, double top, double right, double bottom);

@@ -14,7 +14,7 @@ namespace lobefit {
 FieldImage::FieldImage(int columns, int rows)
     : width(columns),
       height(rows),
-      measured(static_cast<std::size_t>(columns * rows), std::numeric_limits<float>::quiet_NaN()),
+      measured(PixelIndex(0, rows, columns), std::numeric_limits<float>::quiet_NaN()),
       fitted(measured),
       log_ratio(measured) {}
 
@@ -91,7 +91,7 @@ cv::Mat Picture(const std::vector<float>& values, int width, int height, const s
   cv::Mat picture(height, width, CV_8UC4);
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) {
-      const Rgb c = color(values[static_cast<std::size_t>(row * width + column)]);
+      const Rgb c = color(values[PixelIndex(column, row, width)]);
       picture.at<cv::Vec4b>(row, column) = {c.r, c.g, c.b, 255};
     }
   }

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "lobefit/report/axes.h"
@@ -20,7 +22,13 @@ struct FieldImage {
 
   FieldImage() = default;
   FieldImage(int columns, int rows);
-  std::size_t At(int column, int row) const { return static_cast<std::size_t>(row * width + column); }
+  std::size_t At(int column, int row) const { return PixelIndex(column, row, width); }
+};
+
+// A field with a name that is fit for a file: "maps.theta_i_30.phi_i_0".
+struct NamedField {
+  std::string name;
+  std::shared_ptr<const FieldImage> image;
 };
 
 // Empties measured and log_ratio where `near` is 0, but for gaps of a few pixels between places where it is not.

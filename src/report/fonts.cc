@@ -70,7 +70,7 @@ bool Fonts::has_outlines() const { return state_->faces[0] != nullptr; }
 
 Fonts::Glyph Fonts::State::Render(char32_t character, double pixels, Weight weight) const {
   Glyph glyph;
-  const FT_Face face = FaceOf(weight);
+  FT_FaceRec* const face = FaceOf(weight);
   if (face == nullptr) {
     const std::string text = Spelled(character);
     const double font_scale = pixels / 30;
@@ -87,7 +87,7 @@ Fonts::Glyph Fonts::State::Render(char32_t character, double pixels, Weight weig
   }
   FT_Set_Char_Size(face, 0, static_cast<FT_F26Dot6>(std::lround(pixels * 64)), 72, 72);
   if (FT_Load_Char(face, character, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) return glyph;
-  const FT_GlyphSlot slot = face->glyph;
+  FT_GlyphSlotRec* const slot = face->glyph;
   if (weight == Weight::kOblique) {
     const FT_Matrix slant = {0x10000, 0x10000 / 5, 0, 0x10000};
     FT_Outline_Transform(&slot->outline, &slant);

@@ -18,7 +18,7 @@
 namespace lobefit {
 namespace {
 
-constexpr std::array<int, 3> kTable = {90, 45, 8};  // sqrt(theta_h), theta_d, phi_d
+constexpr std::array<std::size_t, 3> kTable = {90, 45, 8};  // sqrt(theta_h), theta_d, phi_d
 constexpr std::size_t kMostSliceValues = 60000;
 constexpr std::size_t kMostPointsOfASlice = 240;
 constexpr int kReferenceSize = 40;
@@ -26,6 +26,7 @@ constexpr int kReferenceSize = 40;
 template <class Items, class F>
 std::string JsonList(const Items& items, const F& text) {
   std::vector<std::string> list;
+  list.reserve(items.size());
   for (const auto& item : items) list.push_back(text(item));
   return Join({"[", Join(list, ","), "]"}, "");
 }
@@ -33,16 +34,17 @@ std::string JsonList(const Items& items, const F& text) {
 // The measured values for the sphere: 16-bit logarithms of linear red, green, blue; 0: not known.
 std::string TableJson(const ReportData& data, const ChannelColor& to_color) {
   const IsotropicLookup lookup(data.measurement);
-  const std::size_t texels = static_cast<std::size_t>(kTable[0] * kTable[1] * kTable[2]);
+  const std::size_t width = kTable[0], height = kTable[1], depth = kTable[2], texels = width * height * depth;
   std::vector<std::array<double, 3>> colors(texels, {std::nan(""), 0, 0});
   double high = 0;
   std::vector<double> f_r(data.channels());
   std::size_t known = 0;
   for (std::size_t i = 0; i < texels; ++i) {
-    const auto at = static_cast<int>(i);
-    const double h = static_cast<double>(at % kTable[0]) / (kTable[0] - 1),
-                 d = static_cast<double>(at / kTable[0] % kTable[1]) / (kTable[1] - 1);
-    const double p = static_cast<double>(at / kTable[0] / kTable[1]) / (kTable[2] - 1);
+    const std::size_t column = i % width, row = i / width % height, slab = i / (width * height);
+    const auto share = [](std::size_t at, std::size_t count) {
+      return static_cast<double>(at) / static_cast<double>(count - 1);
+    };
+    const double h = share(column, width), d = share(row, height), p = share(slab, depth);
     Vec3 wi, wo;
     FromHalfDifference({h * h * kPi / 2, 0, d * kPi / 2, p * kPi / 2}, &wi, &wo);
     if (!lookup.Find(wi, wo, f_r.data())) continue;
@@ -61,8 +63,8 @@ std::string TableJson(const ReportData& data, const ChannelColor& to_color) {
       bytes.push_back(static_cast<char>(q >> 8U));
     }
   }
-  return Join({"{\"size\":", JsonList(kTable, [](int n) { return std::to_string(n); }), ",\"low\":", JsonNumber(bottom),
-               ",\"high\":", JsonNumber(top), ",\"data\":\"", Base64(bytes), "\"}"},
+  return Join({"{\"size\":", JsonList(kTable, [](std::size_t n) { return std::to_string(n); }),
+               ",\"low\":", JsonNumber(bottom), ",\"high\":", JsonNumber(top), ",\"data\":\"", Base64(bytes), "\"}"},
               "");
 }
 

@@ -10,7 +10,7 @@ namespace lobefit {
 namespace {
 
 // Cells along each coordinate; phi_d matters least.
-constexpr std::array<int, 3> kCells = {90, 60, 12};
+constexpr std::array<std::size_t, 3> kCells = {90, 60, 12};
 constexpr float kPhiScale = 0.35F;
 // In units of the whole range of theta_d: about five degrees, or the distance of two rows of a sparse table.
 constexpr float kReach = 0.085F;
@@ -30,13 +30,15 @@ ScatterPoint PointOf(const Coordinates& c) {
   return {static_cast<float>(c.h), static_cast<float>(c.d), kPhiScale * static_cast<float>(c.phi), 0};
 }
 
-int Cell(double t, int count) { return std::min(count - 1, static_cast<int>(t * count)); }
+std::size_t Cell(double t, std::size_t count) {
+  return std::min(count - 1, static_cast<std::size_t>(t * static_cast<double>(count)));
+}
 
 }  // namespace
 
 IsotropicLookup::IsotropicLookup(const Measurement& measurement) : channels_(measurement.channels.size()) {
   const Samples& samples = measurement.samples;
-  const std::size_t cells = static_cast<std::size_t>(kCells[0] * kCells[1] * kCells[2]), width = 3 + channels_;
+  const std::size_t cells = kCells[0] * kCells[1] * kCells[2], width = 3 + channels_;
   std::vector<float> sums(cells * width);
   std::vector<std::uint32_t> counts(cells);
   // A million samples fill the cells many times over.
@@ -44,8 +46,8 @@ IsotropicLookup::IsotropicLookup(const Measurement& measurement) : channels_(mea
   const std::size_t step = 1 + samples.size() / kTaken;
   for (std::size_t i = 0; i < samples.size(); i += step) {
     const Coordinates c = CoordinatesOf(samples.wi(i), samples.wo(i));
-    const int at = (Cell(c.h, kCells[0]) * kCells[1] + Cell(c.d, kCells[1])) * kCells[2] + Cell(c.phi, kCells[2]);
-    const auto cell = static_cast<std::size_t>(at);
+    const std::size_t cell =
+        (Cell(c.h, kCells[0]) * kCells[1] + Cell(c.d, kCells[1])) * kCells[2] + Cell(c.phi, kCells[2]);
     float* sum = &sums[cell * width];
     sum[0] += static_cast<float>(c.h), sum[1] += static_cast<float>(c.d), sum[2] += static_cast<float>(c.phi);
     for (std::size_t k = 0; k < channels_; ++k) sum[3 + k] += static_cast<float>(samples.values[k][i]);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lobefit/base/parallel.h"
+#include "lobefit/base/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/report/field_image.h"
@@ -27,7 +28,7 @@ constexpr std::size_t kMostPoints = 20000;
 // One incident direction: values at the pixels of a disc whose radius is theta_o; NaN where nothing is known.
 struct Map {
   Vec3 stays;  // the direction that stays, as drawn
-  FieldImage image = FieldImage(kSize, kSize);
+  std::shared_ptr<FieldImage> image = std::make_shared<FieldImage>(kSize, kSize);
   double cover = 0;
 };
 
@@ -94,15 +95,15 @@ Map MakeMap(const ReportData& data, const std::vector<std::uint32_t>& members, c
   const ScatterField field(std::move(points), 2, reach);
   std::vector<double> f_r(data.channels());
   int inside = 0;
-  std::vector<std::uint8_t> near(static_cast<std::size_t>(kSize * kSize));
+  std::vector<std::uint8_t> near(map.image->measured.size());
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
       const Vec3 w = PixelDirection(column, row);
       if (w.z <= 0) continue;
       ++inside;
-      const std::size_t pixel = map.image.At(column, row);
+      const std::size_t pixel = map.image->At(column, row);
       data.fitted.Evaluate(outgoing ? w : map.stays, outgoing ? map.stays : w, f_r.data());
-      map.image.fitted[pixel] = static_cast<float>(data.Display(f_r));
+      map.image->fitted[pixel] = static_cast<float>(data.Display(f_r));
       std::array<std::uint32_t, 4> indices;
       std::array<float, 4> weights;
       bool is_near = false;
@@ -113,12 +114,12 @@ Map MakeMap(const ReportData& data, const std::vector<std::uint32_t>& members, c
         sum += weights[k] * values[indices[k]];
         ratio += weights[k] * ratios[indices[k]];
       }
-      map.image.measured[pixel] = sum;
+      map.image->measured[pixel] = sum;
       // Between the ratios of samples, not the ratio of a value between samples: steep lobes would leave patterns.
-      map.image.log_ratio[pixel] = ratio;
+      map.image->log_ratio[pixel] = ratio;
     }
   }
-  map.cover = static_cast<double>(KeepNear(near, &map.image)) / inside;
+  map.cover = static_cast<double>(KeepNear(near, map.image.get())) / inside;
   return map;
 }
 
@@ -187,7 +188,7 @@ void Draw(const Maps& maps, Canvas* canvas, const Box& content) {
   const double used = size * static_cast<double>(count) + kSpace * static_cast<double>(count - 1);
   const double left = content.x + kLabel + std::max(0.0, (content.width - kLabel - used) / 2);
   std::vector<const FieldImage*> images;
-  for (const Map& map : maps.maps) images.push_back(&map.image);
+  for (const Map& map : maps.maps) images.push_back(map.image.get());
   const FieldScale scale(images);
   const auto value = [&scale](float v) { return scale.ValueColor(v); };
   const auto ratio = [&scale](float v) { return scale.RatioColor(v); };
@@ -202,9 +203,9 @@ void Draw(const Maps& maps, Canvas* canvas, const Box& content) {
     canvas->Text({x + size / 2, content.y + 12}, label,
                  {.size = style::kBodySize, .color = style::kInk, .align = Align::kCenter, .markup = true});
     const auto place = [&](int row) { return Box{x, content.y + kHead + row * (size + kSpace), size, size}; };
-    DrawDisc(canvas, Picture(map.image.measured, kSize, kSize, value), place(0), map.stays, {255, 255, 255});
-    DrawDisc(canvas, Picture(map.image.fitted, kSize, kSize, value), place(1), map.stays, {255, 255, 255});
-    DrawDisc(canvas, Picture(map.image.log_ratio, kSize, kSize, ratio), place(2), map.stays, style::kInk);
+    DrawDisc(canvas, Picture(map.image->measured, kSize, kSize, value), place(0), map.stays, {255, 255, 255});
+    DrawDisc(canvas, Picture(map.image->fitted, kSize, kSize, value), place(1), map.stays, {255, 255, 255});
+    DrawDisc(canvas, Picture(map.image->log_ratio, kSize, kSize, ratio), place(2), map.stays, style::kInk);
   }
   for (int row = 0; row < 3; ++row) {
     canvas->Text({left - 14, content.y + kHead + row * (size + kSpace) + size / 2},
@@ -230,6 +231,13 @@ std::optional<Panel> MapsPanel(const ReportData& data) {
     return kHead + 3 * (DiscSize(width, std::max<std::size_t>(maps->maps.size(), 3)) + kSpace) + FieldScale::kHeight;
   };
   panel.draw = [maps](Canvas* canvas, const Box& content) { Draw(*maps, canvas, content); };
+  const std::string side = data.staying.outgoing ? "o" : "i";
+  for (const Map& map : maps->maps) {
+    const auto degrees = [](double angle) { return std::to_string(std::lround(RadiansToDegrees(angle))); };
+    std::string name = Join({"maps.theta_", side, "_", degrees(PolarAngle(map.stays))}, "");
+    if (!data.measurement.isotropic) name += Join({".phi_", side, "_", degrees(Azimuth(map.stays))}, "");
+    panel.fields.push_back({name, map.image});
+  }
   return panel;
 }
 

@@ -40,16 +40,16 @@ void FillGaps(std::vector<float>* density) {
     const std::vector<float> before = *density;
     for (int row = 0; row < kCells; ++row) {
       for (int column = 0; column < kCells; ++column) {
-        if (!std::isnan(before[static_cast<std::size_t>(row * kCells + column)])) continue;
+        if (!std::isnan(before[PixelIndex(column, row, kCells)])) continue;
         float sum = 0;
         int count = 0;
         for (int y = std::max(0, row - 1); y <= std::min(kCells - 1, row + 1); ++y) {
           for (int x = std::max(0, column - 1); x <= std::min(kCells - 1, column + 1); ++x) {
-            const float d = before[static_cast<std::size_t>(y * kCells + x)];
+            const float d = before[PixelIndex(x, y, kCells)];
             if (!std::isnan(d)) sum += d, ++count;
           }
         }
-        if (count >= 2) (*density)[static_cast<std::size_t>(row * kCells + column)] = sum / static_cast<float>(count);
+        if (count >= 2) (*density)[PixelIndex(column, row, kCells)] = sum / static_cast<float>(count);
       }
     }
   }
@@ -85,18 +85,18 @@ void FindDensity(NdfPicture* ndf) {
     const int column = static_cast<int>(std::floor(((x - ndf->center_x) / ndf->half + 1) * kCells / 2));
     const int row = static_cast<int>(std::floor((1 - (y - ndf->center_y) / ndf->half) * kCells / 2));
     if (column < 0 || row < 0 || column >= kCells || row >= kCells) continue;
-    sums[static_cast<std::size_t>(row * kCells + column)] += d;
-    counts[static_cast<std::size_t>(row * kCells + column)] += 1;
+    sums[PixelIndex(column, row, kCells)] += d;
+    counts[PixelIndex(column, row, kCells)] += 1;
   }
   ndf->density.assign(sums.size(), std::numeric_limits<float>::quiet_NaN());
-  const auto mean_near = [](const std::vector<double>& sum, const std::vector<double>& count, int at, int stride,
-                            int size, int reach) {
+  const auto mean_near = [](const std::vector<double>& sum, const std::vector<double>& count, int at, int size,
+                            int reach) {
     // Of the nearest cells that hold samples, in one dimension.
     for (int r = 0; r <= reach; ++r) {
       double total = 0, number = 0;
       for (const int k : {at - r, at + r}) {
         if (k < 0 || k >= size) continue;
-        total += sum[static_cast<std::size_t>(k * stride)], number += count[static_cast<std::size_t>(k * stride)];
+        total += sum[static_cast<std::size_t>(k)], number += count[static_cast<std::size_t>(k)];
       }
       if (number > 0) return total / number;
     }
@@ -104,10 +104,10 @@ void FindDensity(NdfPicture* ndf) {
   };
   for (int row = 0; row < kCells; ++row) {
     for (int column = 0; column < kCells; ++column) {
-      const auto i = static_cast<std::size_t>(row * kCells + column);
+      const std::size_t i = PixelIndex(column, row, kCells);
       if (data.measurement.isotropic) {
         const int bin = static_cast<int>(std::hypot(column + 0.5 - kCells / 2.0, row + 0.5 - kCells / 2.0));
-        if (bin < kCells) ndf->density[i] = static_cast<float>(mean_near(radial, radial_counts, bin, 1, kCells, 3));
+        if (bin < kCells) ndf->density[i] = static_cast<float>(mean_near(radial, radial_counts, bin, kCells, 3));
       } else if (counts[i] > 0) {
         ndf->density[i] = static_cast<float>(sums[i] / counts[i]);
       }
@@ -138,7 +138,7 @@ void Draw(const NdfPicture& ndf, Canvas* canvas, const Box& content) {
     cv::Mat picture(kCells, kCells, CV_8UC3);
     for (int row = 0; row < kCells; ++row) {
       for (int column = 0; column < kCells; ++column) {
-        const float d = ndf.density[static_cast<std::size_t>(row * kCells + column)];
+        const float d = ndf.density[PixelIndex(column, row, kCells)];
         const Rgb c = std::isnan(d) ? Rgb{255, 255, 255} : Shade(ColorOf(static_cast<double>(d)));
         picture.at<cv::Vec3b>(row, column) = {c.r, c.g, c.b};
       }

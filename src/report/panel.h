@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lobefit/report/canvas.h"
+#include "lobefit/report/field_image.h"
 #include "lobefit/report/report_data.h"
 
 namespace lobefit {
@@ -27,6 +28,7 @@ struct Panel {
   // Height of the content for a width, page units; the layout may give more.
   std::function<double(Canvas*, double width)> height;
   std::function<void(Canvas*, const Box& content)> draw;
+  std::vector<NamedField> fields;  // the numbers behind its pictures
 };
 
 using PanelMaker = std::optional<Panel> (*)(const ReportData& data);

@@ -24,6 +24,11 @@ struct ReportOptions {
 void WriteReportPng(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
                     const ReportOptions& options = {});
 
+// The float maps behind the pictures as OpenEXR, one part a map; throws OutputError too where the measurement fills no
+// map.
+void WriteReportExr(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
+                    const ReportOptions& options = {});
+
 // The same content as one self-contained page, under 3 MB, with live spheres (WebGL 2), slices and parameters; needs no
 // network. The page tests itself when it is opened with "#selftest". Throws as above.
 void WriteReportHtml(const Material& material, const Measurement& measurement, const std::filesystem::path& path,

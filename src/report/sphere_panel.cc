@@ -75,8 +75,8 @@ Sphere UnderSky(const Brdf& brdf, const ReportData& data, const ChannelColor& to
   const SlopeFrame lobe(data.fitted.lobe_shapes()[0]);
   const bool grey = data.channels() < 3;
   const Vec3 view = {0, 0, 1};
-  Sphere sphere = {kSkySize, std::vector<Color>(kSkySize * kSkySize, Color{0, 0, 0}),
-                   std::vector<std::uint8_t>(kSkySize * kSkySize, 1)};
+  const std::size_t pixels = PixelIndex(0, kSkySize, kSkySize);
+  Sphere sphere = {kSkySize, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
   ParallelFor(kSkySize, data.threads, [&](std::size_t row) {
     std::vector<double> f_r(data.channels());
     for (int column = 0; column < kSkySize; ++column) {
@@ -128,7 +128,7 @@ cv::Mat Rendered(const Sphere& sphere, double exposure) {
   cv::Mat picture(sphere.size, sphere.size, CV_8UC4);
   for (int row = 0; row < sphere.size; ++row) {
     for (int column = 0; column < sphere.size; ++column) {
-      const auto i = static_cast<std::size_t>(row * sphere.size + column);
+      const std::size_t i = PixelIndex(column, row, sphere.size);
       const Rgb c = sphere.known[i] != 0 ? ToScreen(sphere.color[i], exposure) : style::kRule;
       picture.at<cv::Vec4b>(row, column) = {c.r, c.g, c.b, 255};
     }
@@ -168,7 +168,7 @@ void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
 
 LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
   const Vec3 light = Normalized(Vec3{-0.45, 0.6, 0.75}), view = {0, 0, 1};
-  const auto pixels = static_cast<std::size_t>(size * size);
+  const std::size_t pixels = PixelIndex(0, size, size);
   LitSphere sphere = {size, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
   std::vector<double> f_r(channels);
   for (int row = 0; row < size; ++row) {
@@ -177,7 +177,7 @@ LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, st
       if (!SphereFrame(column, row, size, &frame)) continue;
       const Vec3 wi = frame.ToLocal(light), wo = frame.ToLocal(view);
       if (wi.z <= 0 || wo.z <= 0) continue;
-      const auto pixel = static_cast<std::size_t>(row * size + column);
+      const std::size_t pixel = PixelIndex(column, row, size);
       if (!brdf(wi, wo, f_r.data())) {
         sphere.known[pixel] = 0;
         continue;

@@ -121,7 +121,7 @@ std::string Canvas::Shorten(std::string_view utf8, const TextStyle& style, doubl
   const std::u32string text = Decode(utf8);
   for (std::size_t kept = text.size(); kept-- > 0;) {
     const std::size_t head = middle ? (kept + 1) / 2 : kept, tail = kept - head;
-    const std::string shorter = Encode(text.substr(0, head) + U"…" + text.substr(text.size() - tail));
+    std::string shorter = Encode(text.substr(0, head) + U"…" + text.substr(text.size() - tail));
     if (TextWidth(shorter, style) <= width) return shorter;
   }
   return "…";
@@ -136,7 +136,8 @@ std::vector<std::string> Canvas::Wrap(std::string_view utf8, const TextStyle& st
     const std::string word = text.substr(begin, end - begin);
     begin = end + 1;
     if (word.empty()) continue;
-    const std::string longer = line.empty() ? word : line + " " + word;
+    std::string longer = line;
+    longer.append(line.empty() ? "" : " ").append(word);
     if (!line.empty() && TextWidth(longer, style) > width) {
       lines.push_back(line);
       line = word;

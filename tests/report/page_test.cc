@@ -1,10 +1,15 @@
 #include "lobefit/report/page.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 
 #include "tests/report/synthetic.h"
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -119,6 +124,41 @@ TEST(WriteReportPng, WritesAPngOrNothing) {
   WriteReportPng(material, measurement, path, {.threads = 2, .scale = 1, .font_folders = {}});
   EXPECT_EQ(MappedFile(path).bytes().substr(1, 3), "PNG");
   EXPECT_THROW(WriteReportPng(material, measurement, "/nonexistent/folder/x.png"), OutputError);
+}
+
+TEST(WriteReportExr, HoldsTheMapsOrSaysThatThereAreNone) {
+  const Material material = test::MakeMaterial(3, true);
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "maps.report.exr";
+  WriteReportExr(material, test::Measure(material, test::TablePairs(), 0.02, true), path);
+  Imf::MultiPartInputFile file(path.c_str());
+  ASSERT_GE(file.parts(), 3);
+  bool found_slices = false;
+  for (int k = 0; k < file.parts(); ++k) {
+    const Imf::Header& header = file.header(k);
+    found_slices |= header.name() == "half_difference.phi_d_90";
+    const Imath::Box2i window = header.dataWindow();
+    const int width = window.max.x + 1, height = window.max.y + 1;
+    std::vector<float> measured(static_cast<std::size_t>(width * height)), fitted = measured, ratio = measured;
+    Imf::FrameBuffer buffer;
+    for (auto& [name, values] : {std::pair{"measured", &measured}, {"fitted", &fitted}, {"log_ratio", &ratio}}) {
+      buffer.insert(name, Imf::Slice(Imf::FLOAT, static_cast<char*>(static_cast<void*>(values->data())), sizeof(float),
+                                     sizeof(float) * static_cast<std::size_t>(width)));
+    }
+    Imf::InputPart part(file, k);
+    part.setFrameBuffer(buffer);
+    part.readPixels(0, height - 1);
+    int known = 0, close = 0;
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      if (std::isnan(measured[i]) || std::isnan(fitted[i])) continue;
+      ++known;
+      close += std::fabs(ratio[i]) < 0.1F ? 1 : 0;
+    }
+    EXPECT_GT(known, width * height / 4) << header.name();
+    EXPECT_GT(close, known * 9 / 10) << header.name();
+  }
+  EXPECT_TRUE(found_slices);
+  const Material mono = test::MakeMaterial(1, true);
+  EXPECT_THROW(WriteReportExr(mono, test::Measure(mono, test::GoniometerPairs(false), 0, false), path), OutputError);
 }
 
 }  // namespace
