@@ -125,7 +125,11 @@ double MeasuredError(const std::array<double, kMeasured>& table, double power, d
 // For l = 0 ... full degree: an upper bound of the terms of degree above l, sum of (2j+1)/2 c_j |g_j| (|P_j| <= 1),
 // plus the rounding.
 std::vector<double> HarmonicErrors(double k) {
-  const int last = FullDegree(k);
+  // For very large k the terms fall like l^(-3/2) for long; past degree kCut their sum is bounded by the last one times
+  // its degree.
+  constexpr int kCut = 4096;
+  const bool cut = std::sqrt(80 * k) > kCut;
+  const int last = cut ? kCut : FullDegree(k);
   std::vector<double> rho, term(last + 2, 0.0);
   SphericalBesselRatios(k, last + 1, &rho);
   double c = 1, g = 0.5;
@@ -135,7 +139,7 @@ std::vector<double> HarmonicErrors(double k) {
     if (l % 2 == 0 || l == 1) term[l] = 0.5 * (2 * l + 1) * c * (l == 1 ? 1.0 / 3 : std::fabs(g));
   }
   std::vector<double> error(last + 1);
-  double sum = 1e-15;
+  double sum = cut ? 0.5 * (2 * last + 1) * std::fabs(g) * last : 1e-15;
   for (int l = last; l >= 0; --l) error[l] = sum += term[l + 1];
   return error;
 }

@@ -191,6 +191,11 @@ TEST(SgForms, CheapestMeetsTheErrorAskedFor) {
   EXPECT_EQ(CheapestSgForm(0.2, 1e-3).kind, SgForm::kEq40);
   EXPECT_EQ(CheapestSgForm(1.2, 2e-3).l_max, 2);
   EXPECT_EQ(CheapestSgForm(0.3, 1e-18).kind, SgForm::kExact);
+  // However narrow: neither memory nor time grows with 1 / alpha.
+  EXPECT_EQ(CheapestSgForm(1e-9, 1e-3).kind, SgForm::kBeckmann);
+  EXPECT_NEAR(SgFormError({SgForm::kHarmonics, 2}, 1e-9), SgFormError({SgForm::kHarmonics, 2}, 0.002), 0.05);
+  EXPECT_LE(MaximalError({SgForm::kHarmonics, 30}, 1e-9), SgFormError({SgForm::kHarmonics, 30}, 1e-9));
+  EXPECT_NEAR(SgCrossSection(1e-9, 0.3), 0.3, 1e-15);
 }
 
 }  // namespace
