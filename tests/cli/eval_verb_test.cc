@@ -104,7 +104,7 @@ TEST_F(EvalVerb, SaysRowAndColumnOfWhatItRefuses) {
   ExpectRefused("ssl", "", {"empty"});
   ExpectRefused("ssl", "alpha,Theta\n0.3,0.1\n", {"column 'theta' is missing", "did you mean 'Theta'"});
   ExpectRefused("ssl", "alpha,theta,theta\n0.3,0.1,0.1\n", {"'theta'", "twice"});
-  ExpectRefused("sll", good, {"'sll' is not a quantity", "did you mean 'ssl'"});
+  ExpectRefused("ellipsoid_d", good, {"'ellipsoid_d' is not a quantity", "did you mean 'ellipsoid_D'"});
   ExpectRefused("offcenter_D", "kind,alpha_x,alpha_y,r,slope_x,slope_y,mx,my,mz\nGGX,1,1,0,0,0,0,0,1\n",
                 {"'kind'", "beckmann, ggx"});
   ExpectRefused("ellipsoid_D", "alpha_x,alpha_y,theta_x,theta_y,theta_z,mx,my,mz\n1,1,0,0,0,0,0,0\n",
