@@ -46,7 +46,7 @@ struct XmlSelection {
 };
 
 // See ReadOptions::xml_wavelength.
-XmlSelection SelectXmlWavelengths(const XmlFile& xml, const XmlSide& side, const XmlStructure& structure,
+XmlSelection SelectXmlWavelengths(const XmlFile& xml, const XmlSide& chosen, const XmlStructure& structure,
                                   const ReadOptions& options);
 
 }  // namespace lobefit
