@@ -101,12 +101,12 @@ void Loop(const GgxArrays& arrays) {
 template <bool kGradient>
 void LobeLoop(const GgxArrays& arrays, Masking masking) {
   switch (masking) {
-    case Masking::kSmithSeparable:
-      return Loop<LobeKernel<kGradient, GgxMasking::kClamped>>(arrays);
     case Masking::kSmithUnclamped:
       return Loop<LobeKernel<kGradient, GgxMasking::kUnclamped>>(arrays);
     case Masking::kSmithHeight:
       return Loop<LobeKernel<kGradient, GgxMasking::kHeight>>(arrays);
+    default:
+      return Loop<LobeKernel<kGradient, GgxMasking::kClamped>>(arrays);
   }
 }
 
@@ -222,7 +222,7 @@ double GgxLobe(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Ma
                : evaluate.operator()<false, GgxMasking::kUnclamped>();
     case Masking::kSmithHeight:
       return g ? evaluate.operator()<true, GgxMasking::kHeight>() : evaluate.operator()<false, GgxMasking::kHeight>();
-    case Masking::kSmithSeparable:
+    default:
       break;
   }
   return g ? evaluate.operator()<true, GgxMasking::kClamped>() : evaluate.operator()<false, GgxMasking::kClamped>();

@@ -22,7 +22,8 @@ struct DirectionArrays {
 };
 
 // specular[i] = D(wh) G2(wi, wo) / (4 cos_theta_i cos_theta_o), 1/sr; cos_d[i] = wi . wh.
-// The lobe is given in slope coordinates (off_center.h), in which it is fitted; any finite values are valid.
+// The lobe is given in slope coordinates (off_center.h), in which it is fitted; any finite values are valid. `masking` is
+// one of the first three kinds; lobe.h evaluates all.
 // gradient: 5 arrays of `count`, one after the other, d specular / d v[j]; null = not wanted. The value is the same
 // either way. Where a clamped G1 is at 1, its derivative is 0: the model has a kink there. Formulas: [Walter eq 1,
 // 4-6], [Heitz eq 99], in slope space (math.md sections 6 and 7); see ggx_lobe-inl.h.

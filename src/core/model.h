@@ -2,6 +2,7 @@
 // parameters, from which recipes, bounds, JSON documents, help and report columns take names, units and ranges.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,32 +14,61 @@ enum class Ndf {
   kGgxTilted,  // isotropic ellipsoid whose axis may tilt within one plane: alpha_y tied, theta_y free, theta_z fixed
   kGgxAnisotropic,  // alpha_x, alpha_y, theta_z; axis along the normal
   kEllipsoid,       // all five parameters [Walter eq 1]
+  // Beckmann in slope space [Heitz eq 61-67, 78-95]. The five parameters name the ellipse in slope space: mean and
+  // widths are those of the GGX ellipsoid with the same parameters; without tilt they are Beckmann's own alphas.
+  kBeckmann,
+  kBeckmannAnisotropic,
+  kBeckmannOffCenter,
+  // On the whole sphere of normals [dEon eq 26, 28]; one alpha.
+  kKagiwadaKalaba,     // b = 1 / (1 + alpha^2 / 2), so that a narrow lobe falls to half at the angle alpha
+  kSphericalGaussian,  // k = 2 / alpha^2, so that a narrow lobe is Beckmann's
 };
 
-// Masking and shadowing for both directions.
+enum class NdfFamily { kGgx, kBeckmann, kKagiwadaKalaba, kSphericalGaussian };
+NdfFamily FamilyOf(Ndf ndf);
+bool IsRound(Ndf ndf);   // alpha_y follows alpha_x
+bool IsTilted(Ndf ndf);  // the axis may leave the normal
+
+// Masking and shadowing for both directions, G2.
 enum class Masking {
-  kSmithSeparable,  // G1(wi) G1(wo), each min(1, cos / sigma) [Walter eq 5-6]; the min is a kink for tilted lobes
-  kSmithUnclamped,  // the same without the min: smooth, but energy can be created on one side of a tilted lobe
-  kSmithHeight,     // height-correlated [Heitz eq 99] with 1 + Lambda = max(1, sigma / cos)
+  kSmithSeparable,        // G1(wi) G1(wo), each min(1, cos / sigma) [Walter eq 5-6]; the min is a kink for tilted lobes
+  kSmithUnclamped,        // the same without the min: smooth, but energy can be created on one side of a tilted lobe
+  kSmithHeight,           // height-correlated [Heitz eq 99] with 1 + Lambda = max(1, sigma / cos)
+  kSmithHeightDirection,  // height- and direction-correlated [Heitz eq 101]; a kink where both Lambdas are equal
+  kVCavity,               // [Heitz eq 49-50]; lobes about the normal only
+  // For comparison, not derived from a surface:
+  kImplicit,      // cos_theta_i cos_theta_o [Heitz eq 56]
+  kSchlickSmith,  // [Schlick 1994] with m^2 the product of the widths in slope space
+  kKelemen,       // cos_theta_i cos_theta_o / (wi . wh)^2 [Heitz eq 58]
 };
 
 enum class Fresnel {
-  kSchlick,  // F = f0 + (1 - f0) (1 - cos_theta_d)^5, f0 a channel
-  kNone,     // a free scale a channel instead of F
+  kSchlick,     // F = f0 + (1 - f0) (1 - cos_theta_d)^5, f0 a channel
+  kConductor,   // exact, complex index eta + i k a channel
+  kDielectric,  // exact, index ior a channel
+  kNone,        // a free scale a channel instead of F
 };
 
-enum class Diffuse { kLambert, kNone };
+enum class Diffuse {
+  kLambert,
+  kMicrofacet,  // the facets of the first lobe are Lambertian [Heitz eq 31]
+  kNone,
+};
 
 struct Lobe {
   Ndf ndf = Ndf::kEllipsoid;
   Masking masking = Masking::kSmithSeparable;
   Fresnel fresnel = Fresnel::kSchlick;
+  std::string metal = {};  // kConductor: eta and k are those of this metal (optical_constants.h), not fitted
 };
 
 struct Model {
   std::vector<Lobe> lobes;
   Diffuse diffuse = Diffuse::kLambert;
 };
+
+// Why this program does not evaluate the combination, in words that name what would work; empty: it does.
+std::string WhyNotEvaluable(const Model& model);
 
 enum class ParameterGroup { kShape, kFresnel, kDiffuse };
 
@@ -55,11 +85,18 @@ struct Parameter {
   bool per_channel = false;
   bool free = true;         // false: fixed or tied by the choice of NDF (shown, not fitted)
   std::string description;  // one line for people
+  double start = 0;         // where a fit begins that knows nothing better
 };
 
-// The parameters in their fixed order: for each lobe alpha_x, alpha_y, theta_x, theta_y, theta_z, then f0 or scale;
-// last the diffuse albedo.
+// The parameters in their fixed order: for each lobe alpha_x, alpha_y, theta_x, theta_y, theta_z, then those of its
+// Fresnel term (f0; eta, k; ior; or scale); last the diffuse albedo.
 std::vector<Parameter> Parameters(const Model& model);
+
+inline constexpr std::size_t kShapeParameters = 5;
+inline constexpr std::size_t kMaxFresnelParameters = 2;
+std::size_t FresnelParameters(Fresnel fresnel);
+// Index of a lobe's alpha_x in Parameters(model); lobe = model.lobes.size(): index of the diffuse albedo.
+std::size_t FirstParameter(const Model& model, std::size_t lobe);
 
 // inside value = outside value * factor.
 double InsideFactor(const Parameter& parameter);

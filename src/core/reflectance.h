@@ -2,14 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
+#include "lobefit/core/diffuse_facets.h"
 #include "lobefit/core/ggx_lobe.h"
 #include "lobefit/core/model.h"
 
 namespace lobefit {
 
-// f_r = diffuse / pi + sum over lobes of F D G2 / (4 cos_theta_i cos_theta_o) [Walter eq 4-6].
+// f_r = diffuse part + sum over lobes of F D G2 / (4 cos_theta_i cos_theta_o) [Walter eq 4-6], model.h.
 class Reflectance {
  public:
   // `values` in the order of Parameters(model), inside units (radians). Throws std::invalid_argument where their number
@@ -27,13 +29,15 @@ class Reflectance {
   const std::vector<SlopeCoordinates>& lobe_shapes() const { return shapes_; }
 
  private:
-  double Channel(std::size_t channel, const double* specular, const double* schlick) const;
+  // `diffuse`: the diffuse part of albedo 1.
+  double Channel(std::size_t channel, const double* specular, const double* cos_d, double diffuse) const;
 
   Model model_;
   std::size_t channels_;
-  std::vector<SlopeCoordinates> shapes_;        // one a lobe
-  std::vector<std::vector<double>> amplitude_;  // f0 or scale, [lobe][channel]
-  std::vector<double> diffuse_;                 // albedo, [channel]; zero without a diffuse part
+  std::vector<SlopeCoordinates> shapes_;                   // one a lobe
+  std::vector<std::vector<std::vector<double>>> fresnel_;  // parameters, [lobe][channel]
+  std::vector<double> diffuse_;                            // albedo, [channel]; zero without a diffuse part
+  std::shared_ptr<const DiffuseFacets> facets_;            // null: Lambertian
 };
 
 }  // namespace lobefit

@@ -151,13 +151,12 @@ std::vector<std::string> EntryNames(const std::vector<Parameter>& parameters,
 double SquareRoot(double variance) { return variance > 0 ? std::sqrt(variance) : kNan; }
 
 // Angles that are not determined because two alphas agree within the error; their intervals would mean nothing.
-void FlagEqualAlphas(const Eigen::MatrixXd& covariance, std::size_t first, const std::string& prefix,
+void FlagEqualAlphas(const Eigen::MatrixXd& covariance, std::size_t first, Eigen::Index row, const std::string& prefix,
                      Material* material) {
   FittedParameter* p = material->parameters.data() + first;
   if (!p[0].free || !p[1].free || !p[4].free) return;
   const double gap = p[0].values[0] - p[1].values[0];
-  const auto i = static_cast<Eigen::Index>(first);
-  const double variance = covariance(i, i) + covariance(i + 1, i + 1) - 2 * covariance(i, i + 1);
+  const double variance = covariance(row, row) + covariance(row + 1, row + 1) - 2 * covariance(row, row + 1);
   const double sigmas = std::isfinite(variance) && variance > 0 ? gap / std::sqrt(variance) : 0.0;
   if (sigmas >= 2) return;
   p[4].standard_error = p[4].standard_error_clustered = {kNan};
@@ -206,11 +205,15 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
     }
     material->parameters.push_back(fitted);
   }
+  Eigen::Index first_row = 0;
   for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
-    FlagEqualAlphas(covariance, l * (5 + layout.channels()), l == 0 ? "" : fmt::format("lobe{}.", l + 1), material);
+    FlagEqualAlphas(covariance, FirstParameter(recipe.model, l), first_row, l == 0 ? "" : fmt::format("lobe{}.", l + 1),
+                    material);
     const KernelModel kernel = layout.ToKernel(u.data());
     const OffCenter off_center = OffCenterFromSlopeCoordinates(kernel.lobes[l].shape);
     const double ax = std::sqrt(off_center.q11), ay = std::sqrt(off_center.q22);
+    first_row += static_cast<Eigen::Index>(kShapeParameters +
+                                           FresnelParameters(recipe.model.lobes[l].fresnel) * layout.channels());
     material->slope_space.push_back({off_center.slope_x, off_center.slope_y, ax, ay, off_center.q12 / (ax * ay)});
   }
   for (std::size_t a = 0; a < free_rows.size(); ++a) {
@@ -278,8 +281,11 @@ std::optional<Recipe> AutomaticAlternative(const Recipe& recipe, const Material&
   return alternative;
 }
 
-Material Fit(const Recipe& recipe, const FitOptions& options, Measurement* measurement) {
+Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measurement) {
   const auto start_time = std::chrono::steady_clock::now();
+  if (const std::string why = WhyNotEvaluable(wanted.model); !why.empty())
+    throw InputError("recipe '" + wanted.name + "': " + why);
+  const Recipe recipe = WithMetals(wanted, measurement->channels.wavelengths_nm, measurement->channels.names.size());
   const std::size_t read = measurement->samples.size() + measurement->set_aside.total();
   SetAsideForRecipe(recipe, measurement);
   const Samples& samples = measurement->samples;

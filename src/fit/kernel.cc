@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "lobefit/core/ggx_lobe.h"
+#include "lobefit/core/diffuse_facets.h"
+#include "lobefit/core/lobe.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lobefit/fit/kernel.cc"
@@ -76,17 +78,15 @@ void TransformArrays(int transform, const double* f_r, const double* cos_i, std:
   std::copy(out, out + (count - i), target + i);
 }
 
-// Fresnel factor of a channel: schlick ? f0 + (1 - f0) p5 : scale.
-HWY_INLINE V64 FresnelFactor(bool schlick, double amplitude, V64 p5) {
-  return schlick ? hn::MulAdd(Constant(1 - amplitude), p5, Constant(amplitude)) : Constant(amplitude);
-}
-
-// p5 = (1 - cos_d)^5 for n values (n a multiple of the lanes).
-void SchlickArrays(const double* cos_d, std::size_t n, double* p5) {
+// Schlick's factor of one channel, f0 + (1 - f0) p5, and its derivative 1 - p5, with p5 = (1 - cos_d)^5 (n a multiple
+// of the lanes).
+void SchlickArrays(const double* cos_d, double f0, std::size_t n, double* factor, double* derivative) {
   for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
     const V64 x = hn::Sub(Constant(1), Load(cos_d + i));
     const V64 x2 = hn::Mul(x, x);
-    hn::StoreU(hn::Mul(hn::Mul(x2, x2), x), D64(), p5 + i);
+    const V64 p5 = hn::Mul(hn::Mul(x2, x2), x);
+    hn::StoreU(hn::MulAdd(Constant(1 - f0), p5, Constant(f0)), D64(), factor + i);
+    hn::StoreU(hn::Sub(Constant(1), p5), D64(), derivative + i);
   }
 }
 
@@ -103,12 +103,16 @@ void ContractArrays(const double* from, const double* jacobian, std::size_t colu
   }
 }
 
-// f += specular * Fresnel factor.
-void AddLobeArrays(const double* specular, const double* p5, bool schlick, double amplitude, std::size_t n, double* f) {
-  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
-    const V64 factor = FresnelFactor(schlick, amplitude, Load(p5 + i));
-    hn::StoreU(hn::MulAdd(Load(specular + i), factor, Load(f + i)), D64(), f + i);
-  }
+// to += a * b.
+void AddProductArrays(const double* a, const double* b, std::size_t n, double* to) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64()))
+    hn::StoreU(hn::MulAdd(Load(a + i), Load(b + i), Load(to + i)), D64(), to + i);
+}
+
+// to += factor * a.
+void AddScaledArrays(const double* a, double factor, std::size_t n, double* to) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64()))
+    hn::StoreU(hn::MulAdd(Constant(factor), Load(a + i), Load(to + i)), D64(), to + i);
 }
 
 // residual = sqrt_weight (T(f) - target), slope = sqrt_weight dT/df (null: not wanted).
@@ -125,30 +129,30 @@ void ResidualArrays(int transform, const double* f, const double* cos_i, const d
   }
 }
 
-// Shape columns of one lobe and channel: to[k] = slope * Fresnel factor * gradient[k].
-void ShapeColumnArrays(const double* slope, const double* p5, bool schlick, double amplitude, const double* gradient,
-                       std::size_t columns, std::size_t n, std::size_t stride, double* to) {
+// Shape columns of one lobe and channel: to[k] = slope * factor * gradient[k], plus slope * albedo *
+// diffuse_gradient[k] where that is not null.
+void ShapeColumnArrays(const double* slope, const double* factor, const double* gradient, double albedo,
+                       const double* diffuse_gradient, std::size_t columns, std::size_t n, std::size_t stride,
+                       double* to) {
   for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
-    const V64 factor = hn::Mul(Load(slope + i), FresnelFactor(schlick, amplitude, Load(p5 + i)));
+    const V64 s = Load(slope + i), product = hn::Mul(s, Load(factor + i));
     for (std::size_t k = 0; k < columns; ++k) {
-      hn::StoreU(hn::Mul(factor, Load(gradient + k * stride + i)), D64(), to + k * stride + i);
+      V64 column = hn::Mul(product, Load(gradient + k * stride + i));
+      if (diffuse_gradient != nullptr)
+        column = hn::MulAdd(hn::Mul(s, Constant(albedo)), Load(diffuse_gradient + k * stride + i), column);
+      hn::StoreU(column, D64(), to + k * stride + i);
     }
   }
 }
 
-// Amplitude column: slope * specular * (schlick ? 1 - p5 : 1).
-void AmplitudeColumnArrays(const double* slope, const double* p5, bool schlick, const double* specular, std::size_t n,
-                           double* to) {
-  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
-    V64 value = hn::Mul(Load(slope + i), Load(specular + i));
-    if (schlick) value = hn::Mul(value, hn::Sub(Constant(1), Load(p5 + i)));
-    hn::StoreU(value, D64(), to + i);
-  }
+// to = a * b * c.
+void ProductArrays(const double* a, const double* b, const double* c, std::size_t n, double* to) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64()))
+    hn::StoreU(hn::Mul(hn::Mul(Load(a + i), Load(b + i)), Load(c + i)), D64(), to + i);
 }
 
-void ScaleArrays(const double* from, double factor, std::size_t n, double* to) {
-  for (std::size_t i = 0; i < n; i += hn::Lanes(D64()))
-    hn::StoreU(hn::Mul(Constant(factor), Load(from + i)), D64(), to + i);
+void MultiplyArrays(const double* a, const double* b, std::size_t n, double* to) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) hn::StoreU(hn::Mul(Load(a + i), Load(b + i)), D64(), to + i);
 }
 
 // Adds the upper triangle of the Gram matrix of `columns` arrays to `gram`, row by row.
@@ -192,11 +196,12 @@ namespace {
 HWY_EXPORT(TransformArrays);
 HWY_EXPORT(SchlickArrays);
 HWY_EXPORT(ContractArrays);
-HWY_EXPORT(AddLobeArrays);
+HWY_EXPORT(AddProductArrays);
+HWY_EXPORT(AddScaledArrays);
 HWY_EXPORT(ResidualArrays);
 HWY_EXPORT(ShapeColumnArrays);
-HWY_EXPORT(AmplitudeColumnArrays);
-HWY_EXPORT(ScaleArrays);
+HWY_EXPORT(ProductArrays);
+HWY_EXPORT(MultiplyArrays);
 HWY_EXPORT(GramArrays);
 
 // 256 samples: the columns of one channel of a one-lobe model take 16 KB, half of a first-level cache.
@@ -232,17 +237,25 @@ class Block {
  public:
   Block(const KernelSamples& samples, const KernelModel& model, bool gradient)
       : samples_(samples), model_(model), gradient_(gradient) {
-    const std::size_t lobes = model.lobes.size(), channels = model.channels();
+    const std::size_t lobes = model.lobes.size(), channels = model.channels;
     specular_.assign(lobes * kBlock, 0);
-    gradients_.assign(gradient ? lobes * 5 * kBlock : 0, 0);
-    contracted_.assign(gradient ? lobes * 5 * kBlock : 0, 0);
-    p5_.assign(kBlock, 0);
+    gradients_.assign(gradient ? 5 * kBlock : 0, 0);
+    contracted_.assign(gradient ? (lobes + 1) * 5 * kBlock : 0, 0);
     cos_d_.assign(kBlock, 0);
+    diffuse_.assign(kBlock, kInvPi);
     ones_.assign(kBlock, 1);
+    for (const KernelLobe& lobe : model.lobes) {
+      first_fresnel_.push_back(fresnel_size_);
+      fresnel_size_ += FresnelParameters(lobe.kind.fresnel);
+    }
+    factor_.assign(channels * lobes * kBlock, 1);
+    factor_gradient_.assign(channels * fresnel_size_ * kBlock, 1);
     f_.assign(channels * kBlock, 0);
     residual_.assign(channels * kBlock, 0);
     slope_.assign(gradient ? channels * kBlock : 0, 0);
     columns_.assign(gradient ? model.columns() * kBlock : 0, 0);
+    if (model.diffuse_kind == Diffuse::kMicrofacet && !model.diffuse.empty())
+      facets_.emplace(model.lobes[0].kind, model.lobes[0].shape);
   }
 
   // Values of samples [begin, begin + count), count <= kBlock.
@@ -256,14 +269,20 @@ class Block {
     directions.count = count;
     cos_i_ = Padded(directions.wi_z, 0.0, &cos_i_pad_);
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) EvaluateLobe(l, directions);
-    HWY_DYNAMIC_DISPATCH(SchlickArrays)(cos_d_.data(), padded_, p5_.data());
-    for (std::size_t c = 0; c < model_.channels(); ++c) {
+    if (facets_) {
+      facets_->Evaluate(directions, diffuse_.data(), gradient_ ? gradients_.data() : nullptr);
+      std::fill(diffuse_.begin() + static_cast<std::ptrdiff_t>(count_), diffuse_.end(), 0.0);
+      if (gradient_) ContractGradients(0, diffuse_contracted());
+    }
+    for (std::size_t c = 0; c < model_.channels; ++c) {
       double* f = f_.data() + c * kBlock;
-      std::fill_n(f, padded_, model_.diffuse.empty() ? 0.0 : model_.diffuse[c] * kInvPi);
+      std::fill_n(f, padded_, 0.0);
+      if (!model_.diffuse.empty()) {
+        HWY_DYNAMIC_DISPATCH(AddScaledArrays)(diffuse_.data(), model_.diffuse[c], padded_, f);
+      }
       for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
-        const KernelLobe& lobe = model_.lobes[l];
-        HWY_DYNAMIC_DISPATCH(AddLobeArrays)
-        (specular_.data() + l * kBlock, p5_.data(), lobe.schlick, lobe.amplitude[c], padded_, f);
+        EvaluateFresnel(l, c);
+        HWY_DYNAMIC_DISPATCH(AddProductArrays)(specular_.data() + l * kBlock, factor(c, l), padded_, f);
       }
     }
   }
@@ -272,7 +291,7 @@ class Block {
   double Residuals(std::size_t begin, double* sum_robust_weight) {
     const double* sqrt_weight =
         Padded(samples_.sqrt_weight != nullptr ? samples_.sqrt_weight + begin : ones_.data(), 0.0, &sqrt_weight_pad_);
-    for (std::size_t c = 0; c < model_.channels(); ++c) {
+    for (std::size_t c = 0; c < model_.channels; ++c) {
       const double* target = Padded(samples_.target[c] + begin, 1.0, &target_pad_);
       HWY_DYNAMIC_DISPATCH(ResidualArrays)
       (static_cast<int>(model_.transform), f_.data() + c * kBlock, cos_i_, target, sqrt_weight, padded_,
@@ -281,12 +300,12 @@ class Block {
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       double s = 0, weight = 1;
-      for (std::size_t c = 0; c < model_.channels(); ++c) s += residual_[c * kBlock + i] * residual_[c * kBlock + i];
+      for (std::size_t c = 0; c < model_.channels; ++c) s += residual_[c * kBlock + i] * residual_[c * kBlock + i];
       sum += Rho(model_.loss, model_.loss_scale, s, &weight);
       *sum_robust_weight += weight;
       if (model_.loss == Loss::kNone) continue;
       const double root = std::sqrt(weight);
-      for (std::size_t c = 0; c < model_.channels(); ++c) {
+      for (std::size_t c = 0; c < model_.channels; ++c) {
         residual_[c * kBlock + i] *= root;
         if (gradient_) slope_[c * kBlock + i] *= root;
       }
@@ -299,18 +318,20 @@ class Block {
     const double* slope = slope_.data() + c * kBlock;
     double* to = columns_.data();
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
-      const KernelLobe& lobe = model_.lobes[l];
+      const bool facets = facets_ && l == 0;
       HWY_DYNAMIC_DISPATCH(ShapeColumnArrays)
-      (slope, p5_.data(), lobe.schlick, lobe.amplitude[c], contracted_.data() + l * 5 * kBlock, lobe.columns, padded_,
-       kBlock, to);
-      to += lobe.columns * kBlock;
+      (slope, factor(c, l), contracted_.data() + l * 5 * kBlock, facets ? model_.diffuse[c] : 0.0,
+       facets ? diffuse_contracted() : nullptr, model_.lobes[l].columns, padded_, kBlock, to);
+      to += model_.lobes[l].columns * kBlock;
     }
-    for (std::size_t l = 0; l < model_.lobes.size(); ++l, to += kBlock) {
-      HWY_DYNAMIC_DISPATCH(AmplitudeColumnArrays)
-      (slope, p5_.data(), model_.lobes[l].schlick, specular_.data() + l * kBlock, padded_, to);
+    for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
+      for (std::size_t k = 0; k < FresnelParameters(model_.lobes[l].kind.fresnel); ++k, to += kBlock) {
+        HWY_DYNAMIC_DISPATCH(ProductArrays)
+        (slope, specular_.data() + l * kBlock, factor_gradient(c, first_fresnel_[l] + k), padded_, to);
+      }
     }
     if (!model_.diffuse.empty()) {
-      HWY_DYNAMIC_DISPATCH(ScaleArrays)(slope, kInvPi, padded_, to);
+      HWY_DYNAMIC_DISPATCH(MultiplyArrays)(slope, diffuse_.data(), padded_, to);
       to += kBlock;
     }
     std::copy_n(residual_.data() + c * kBlock, padded_, to);
@@ -324,19 +345,49 @@ class Block {
   void EvaluateLobe(std::size_t l, const DirectionArrays& directions) {
     const KernelLobe& lobe = model_.lobes[l];
     double* specular = specular_.data() + l * kBlock;
-    double* gradients = gradient_ ? gradients_.data() + l * 5 * kBlock : nullptr;
-    // The lobe writes its gradient with a stride of `count`; the last, shorter block is spread to kBlock afterwards.
-    GgxLobe(directions, lobe.shape, lobe.masking, specular, cos_d_.data(), gradients);
+    SpecularLobe(directions, lobe.kind, lobe.shape, specular, cos_d_.data(), gradient_ ? gradients_.data() : nullptr);
     std::fill(specular + count_, specular + padded_, 0.0);
     std::fill(cos_d_.begin() + static_cast<std::ptrdiff_t>(count_), cos_d_.end(), 1.0);
-    if (!gradient_) return;
+    if (gradient_) ContractGradients(l, contracted_.data() + l * 5 * kBlock);
+  }
+
+  // gradients_, by slope coordinates, to the solver's coordinates of lobe l. They were written with a stride of
+  // `count_`: the last, shorter block is spread to kBlock first.
+  void ContractGradients(std::size_t l, double* to) {
+    double* gradients = gradients_.data();
     for (std::size_t j = 5; j-- > 0 && count_ < kBlock;) {
       std::copy_backward(gradients + j * count_, gradients + (j + 1) * count_, gradients + j * kBlock + count_);
       std::fill(gradients + j * kBlock + count_, gradients + j * kBlock + padded_, 0.0);
     }
     HWY_DYNAMIC_DISPATCH(ContractArrays)
-    (gradients, lobe.jacobian.data(), lobe.columns, padded_, kBlock, contracted_.data() + l * 5 * kBlock);
+    (gradients, model_.lobes[l].jacobian.data(), model_.lobes[l].columns, padded_, kBlock, to);
   }
+
+  // Fresnel factor of lobe l in channel c, and its derivatives.
+  void EvaluateFresnel(std::size_t l, std::size_t c) {
+    const KernelLobe& lobe = model_.lobes[l];
+    const std::size_t size = FresnelParameters(lobe.kind.fresnel);
+    const double* parameters = lobe.fresnel.data() + c * size;
+    double* value = factor(c, l);
+    if (lobe.kind.fresnel == Fresnel::kSchlick) {
+      HWY_DYNAMIC_DISPATCH(SchlickArrays)
+      (cos_d_.data(), parameters[0], padded_, value, factor_gradient(c, first_fresnel_[l]));
+    } else if (lobe.kind.fresnel == Fresnel::kNone) {
+      std::fill_n(value, padded_, parameters[0]);  // its derivative is 1 from the start
+    } else {
+      for (std::size_t i = 0; i < padded_; ++i) {
+        double dF[kMaxFresnelParameters];
+        value[i] = FresnelFactor(lobe.kind.fresnel, parameters, cos_d_[i], gradient_ ? dF : nullptr);
+        for (std::size_t k = 0; gradient_ && k < size; ++k) factor_gradient(c, first_fresnel_[l] + k)[i] = dF[k];
+      }
+    }
+  }
+
+  double* factor(std::size_t c, std::size_t l) { return factor_.data() + (c * model_.lobes.size() + l) * kBlock; }
+  double* factor_gradient(std::size_t c, std::size_t k) {
+    return factor_gradient_.data() + (c * fresnel_size_ + k) * kBlock;
+  }
+  double* diffuse_contracted() { return contracted_.data() + model_.lobes.size() * 5 * kBlock; }
 
   // An input array of this block: in place where the block is full, else a copy with `pad` behind it.
   const double* Padded(const double* from, double pad, std::vector<double>* copy) const {
@@ -351,7 +402,11 @@ class Block {
   const bool gradient_;
   std::size_t count_ = 0, padded_ = 0;
   const double* cos_i_ = nullptr;
-  std::vector<double> specular_, gradients_, contracted_, p5_, cos_d_, f_, residual_, slope_, columns_, ones_;
+  std::optional<DiffuseFacets> facets_;
+  std::size_t fresnel_size_ = 0;            // of all lobes
+  std::vector<std::size_t> first_fresnel_;  // of each lobe
+  std::vector<double> specular_, gradients_, contracted_, cos_d_, factor_, factor_gradient_, diffuse_;
+  std::vector<double> f_, residual_, slope_, columns_, ones_;
   std::vector<double> cos_i_pad_, sqrt_weight_pad_, target_pad_;
 };
 
@@ -379,6 +434,12 @@ std::size_t KernelModel::shape_columns() const {
   return sum;
 }
 
+std::size_t KernelModel::columns() const {
+  std::size_t sum = shape_columns() + (diffuse.empty() ? 0 : 1) + 1;
+  for (const KernelLobe& lobe : lobes) sum += FresnelParameters(lobe.kind.fresnel);
+  return sum;
+}
+
 void TransformMeasured(Transform transform, const double* f_r, const double* cos_theta_i, std::size_t count,
                        double* target) {
   if (transform == Transform::kRelative) {
@@ -393,11 +454,11 @@ void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gra
   Block block(samples, model, gradient);
   const std::size_t columns = model.columns();
   if (gradient && sums->gram.empty())
-    sums->gram.assign(model.channels(), std::vector<double>(columns * (columns + 1) / 2, 0.0));
+    sums->gram.assign(model.channels, std::vector<double>(columns * (columns + 1) / 2, 0.0));
   for (std::size_t i = begin; i < end; i += kBlock) {
     block.Evaluate(i, std::min(kBlock, end - i));
     sums->sum_rho += block.Residuals(i, &sums->sum_robust_weight);
-    for (std::size_t c = 0; gradient && c < model.channels(); ++c) {
+    for (std::size_t c = 0; gradient && c < model.channels; ++c) {
       HWY_DYNAMIC_DISPATCH(GramArrays)(block.Columns(c).data(), columns, block.padded(), kBlock, sums->gram[c].data());
     }
   }
@@ -407,14 +468,14 @@ void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t 
             std::vector<std::vector<double>>* scores) {
   const std::size_t shape = model.shape_columns(), residual_column = model.columns() - 1,
                     linear = residual_column - shape;
-  scores->assign(shape + linear * model.channels(), std::vector<double>(end - begin, 0.0));
+  scores->assign(shape + linear * model.channels, std::vector<double>(end - begin, 0.0));
   Block block(samples, model, true);
   double unused = 0;
   for (std::size_t i = begin; i < end; i += kBlock) {
     const std::size_t count = std::min(kBlock, end - i);
     block.Evaluate(i, count);
     block.Residuals(i, &unused);
-    for (std::size_t c = 0; c < model.channels(); ++c) {
+    for (std::size_t c = 0; c < model.channels; ++c) {
       const std::vector<double>& columns = block.Columns(c);
       const double* residual = columns.data() + residual_column * kBlock;
       for (std::size_t j = 0; j < residual_column; ++j) {
@@ -427,12 +488,12 @@ void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t 
 
 void ModelValues(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
                  std::vector<std::vector<double>>* values) {
-  values->assign(model.channels(), std::vector<double>(end - begin));
+  values->assign(model.channels, std::vector<double>(end - begin));
   Block block(samples, model, false);
   for (std::size_t i = begin; i < end; i += kBlock) {
     const std::size_t count = std::min(kBlock, end - i);
     block.Evaluate(i, count);
-    for (std::size_t c = 0; c < model.channels(); ++c) {
+    for (std::size_t c = 0; c < model.channels; ++c) {
       std::copy_n(block.f(c), count, (*values)[c].begin() + static_cast<std::ptrdiff_t>(i - begin));
     }
   }

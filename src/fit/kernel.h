@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "lobefit/core/lobe.h"
 #include "lobefit/core/model.h"
-#include "lobefit/core/off_center.h"
 #include "lobefit/recipe/recipe.h"
 
 namespace lobefit {
@@ -29,10 +29,9 @@ void TransformMeasured(Transform transform, const double* f_r, const double* cos
                        double* target);
 
 struct KernelLobe {
+  Lobe kind;
   SlopeCoordinates shape;
-  Masking masking = Masking::kSmithSeparable;
-  bool schlick = true;
-  std::vector<double> amplitude;  // f0 or scale, a channel
+  std::vector<double> fresnel;  // [channel][FresnelParameters(kind.fresnel)]
   // d(slope coordinates) / d(solver's shape coordinates), 5 x columns row-major.
   std::size_t columns = 0;
   std::vector<double> jacobian;
@@ -41,14 +40,16 @@ struct KernelLobe {
 struct KernelModel {
   std::vector<KernelLobe> lobes;
   std::vector<double> diffuse;  // albedo a channel; empty: no diffuse part
+  Diffuse diffuse_kind = Diffuse::kLambert;
+  std::size_t channels = 1;
   Transform transform = Transform::kLog1p;
   Loss loss = Loss::kNone;
   double loss_scale = 1;
 
-  std::size_t channels() const { return lobes.front().amplitude.size(); }
   std::size_t shape_columns() const;
-  // Columns of one channel: shape coordinates of all lobes, one amplitude a lobe, the diffuse albedo, the residual.
-  std::size_t columns() const { return shape_columns() + lobes.size() + (diffuse.empty() ? 0 : 1) + 1; }
+  // Columns of one channel: shape coordinates of all lobes, Fresnel parameters lobe by lobe, the diffuse albedo, the
+  // residual.
+  std::size_t columns() const;
 };
 
 // Sums over samples. gram[c] is the upper triangle, row by row, of the Gram matrix of channel c's columns.
@@ -63,8 +64,8 @@ struct KernelSums {
 void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gradient, std::size_t begin,
                 std::size_t end, KernelSums* sums);
 
-// Rows of J^T r a sample, for sandwich estimates: scores[j][i - begin] with j over shape columns, then [channel][linear
-// columns].
+// Rows of J^T r a sample, for sandwich estimates: scores[j][i - begin] with j over shape columns, then
+// [channel][columns of that channel].
 void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
             std::vector<std::vector<double>>* scores);
 

@@ -26,7 +26,9 @@ double* Entry(Ellipsoid* ellipsoid, int i) {
 Layout::Layout(const Recipe& recipe, const std::vector<std::string>& channels)
     : recipe_(recipe), channels_(channels.size()), linear_(channels.size()) {
   const std::vector<Parameter> parameters = Parameters(recipe.model);
-  for (std::size_t lobe = 0; lobe < recipe.model.lobes.size(); ++lobe) AddShape(lobe, parameters, 6 * lobe);
+  for (std::size_t lobe = 0; lobe < recipe.model.lobes.size(); ++lobe) {
+    AddShape(lobe, parameters, FirstParameter(recipe.model, lobe));
+  }
   shape_size_ = coordinates_.size();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i].group != ParameterGroup::kShape) AddLinear(parameters[i], recipe.parameters[i], channels);
@@ -39,7 +41,7 @@ void Layout::AddShape(std::size_t lobe, const std::vector<Parameter>& parameters
   Shape shape;
   shape.first = coordinates_.size();
   const Ndf ndf = recipe_.model.lobes[lobe].ndf;
-  shape.tied = ndf == Ndf::kGgx || ndf == Ndf::kGgxTilted;
+  shape.tied = IsRound(ndf);
   if (ndf == Ndf::kGgxTilted) shape.fixed[4] = -recipe_.plane_azimuth;
   bool restricted = shape.tied;
   for (std::size_t i = 0; i < 5; ++i) {
@@ -50,7 +52,7 @@ void Layout::AddShape(std::size_t lobe, const std::vector<Parameter>& parameters
   const std::string prefix = lobe == 0 ? "" : "lobe" + std::to_string(lobe + 1) + ".";
   shape.slope = !restricted;
   if (shape.slope) {
-    shape.entries = ndf == Ndf::kEllipsoid ? std::vector<int>{0, 1, 2, 3, 4} : std::vector<int>{2, 3, 4};
+    shape.entries = IsTilted(ndf) ? std::vector<int>{0, 1, 2, 3, 4} : std::vector<int>{2, 3, 4};
     for (const int i : shape.entries) coordinates_.push_back({prefix + kSlopeNames[i], kSlopeLow[i], kSlopeHigh[i]});
   } else {
     for (int i = 0; i < 5; ++i) {
@@ -74,6 +76,7 @@ void Layout::AddLinear(const Parameter& parameter, const ParameterRecipe& entry,
   const double low = entry.low.value_or(parameter.low), high = entry.high.value_or(parameter.high);
   for (std::size_t c = 0; c < channels_; ++c) {
     Linear linear;
+    linear.start = entry.start.empty() ? parameter.start : entry.start[std::min(c, entry.start.size() - 1)];
     if (!entry.fixed.empty()) {
       if (entry.fixed.size() != 1 && entry.fixed.size() != channels_) {
         throw InputError("recipe '" + recipe_.name + "': '" + parameter.json_name + "' is fixed to " +
@@ -112,11 +115,13 @@ KernelModel Layout::ToKernel(const double* u) const {
   kernel.transform = TransformOf(recipe_.metric);
   kernel.loss = recipe_.loss;
   kernel.loss_scale = recipe_.loss_scale;
+  kernel.diffuse_kind = recipe_.model.diffuse;
+  kernel.channels = channels_;
+  std::size_t first_linear = 0;
   for (std::size_t l = 0; l < shapes_.size(); ++l) {
     const Shape& shape = shapes_[l];
     KernelLobe lobe;
-    lobe.masking = recipe_.model.lobes[l].masking;
-    lobe.schlick = recipe_.model.lobes[l].fresnel == Fresnel::kSchlick;
+    lobe.kind = recipe_.model.lobes[l];
     lobe.columns = shape.entries.size();
     lobe.jacobian.assign(5 * lobe.columns, 0.0);
     if (shape.slope) {
@@ -138,18 +143,15 @@ KernelModel Layout::ToKernel(const double* u) const {
         }
       }
     }
+    const std::size_t size = FresnelParameters(lobe.kind.fresnel);
     for (std::size_t c = 0; c < channels_; ++c) {
-      const Linear& linear = linear_[c][l];
-      lobe.amplitude.push_back(linear.index < 0 ? linear.value : u[linear.index]);
+      for (std::size_t k = 0; k < size; ++k) lobe.fresnel.push_back(Value(linear_[c][first_linear + k], u));
     }
+    first_linear += size;
     kernel.lobes.push_back(lobe);
   }
-  if (recipe_.model.diffuse == Diffuse::kLambert) {
-    for (std::size_t c = 0; c < channels_; ++c) {
-      const Linear& linear = linear_[c].back();
-      kernel.diffuse.push_back(linear.index < 0 ? linear.value : u[linear.index]);
-    }
-  }
+  for (std::size_t c = 0; recipe_.model.diffuse != Diffuse::kNone && c < channels_; ++c)
+    kernel.diffuse.push_back(Value(linear_[c].back(), u));
   return kernel;
 }
 
@@ -162,6 +164,11 @@ std::vector<double> Layout::FromShapes(const std::vector<Ellipsoid>& shapes) con
       const int i = shapes_[l].entries[k];
       const double entry = *Entry(&ellipsoid, i);
       u[shapes_[l].first + k] = shapes_[l].slope ? slope.v[i] : (i < 2 ? std::log(entry) : entry);
+    }
+  }
+  for (const std::vector<Linear>& channel : linear_) {
+    for (const Linear& linear : channel) {
+      if (linear.index >= 0) u[static_cast<std::size_t>(linear.index)] = linear.start;
     }
   }
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = std::clamp(u[i], coordinates_[i].low, coordinates_[i].high);
@@ -212,33 +219,33 @@ std::vector<std::vector<double>> Layout::GatherScores(const std::vector<std::vec
 
 ParameterValues Layout::Report(const double* u) const {
   ParameterValues values;
+  std::size_t next = 0;
+  const auto add_linear = [&] {
+    std::vector<double> entries;
+    for (std::size_t c = 0; c < channels_; ++c) entries.push_back(Value(linear_[c][next], u));
+    values.push_back(entries);
+    ++next;
+  };
   for (std::size_t l = 0; l < shapes_.size(); ++l) {
     const Shape& shape = shapes_[l];
     Ellipsoid ellipsoid = shape.slope ? EllipsoidFromSlopeCoordinates(SlopeAt(shape, u)) : EllipsoidAt(shape, u);
     for (int i = 0; i < 5; ++i) values.push_back({*Entry(&ellipsoid, i)});
-    std::vector<double> amplitude;
-    for (std::size_t c = 0; c < channels_; ++c)
-      amplitude.push_back(linear_[c][l].index < 0 ? linear_[c][l].value : u[linear_[c][l].index]);
-    values.push_back(amplitude);
+    for (std::size_t k = 0; k < FresnelParameters(recipe_.model.lobes[l].fresnel); ++k) add_linear();
   }
-  if (recipe_.model.diffuse == Diffuse::kLambert) {
-    std::vector<double> diffuse;
-    for (std::size_t c = 0; c < channels_; ++c)
-      diffuse.push_back(linear_[c].back().index < 0 ? linear_[c].back().value : u[linear_[c].back().index]);
-    values.push_back(diffuse);
-  }
+  if (recipe_.model.diffuse != Diffuse::kNone) add_linear();
   return values;
 }
 
 Eigen::MatrixXd Layout::ReportJacobian(const double* u) const {
-  const bool diffuse = recipe_.model.diffuse == Diffuse::kLambert;
-  const std::size_t rows = shapes_.size() * (5 + channels_) + (diffuse ? channels_ : 0);
+  const std::size_t rows = shapes_.size() * kShapeParameters + linear_[0].size() * channels_;
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(size()));
   Eigen::Index row = 0;
-  const auto add_linear = [&](std::size_t k) {
+  std::size_t next = 0;
+  const auto add_linear = [&] {
     for (std::size_t c = 0; c < channels_; ++c, ++row) {
-      if (linear_[c][k].index >= 0) jacobian(row, linear_[c][k].index) = 1;
+      if (linear_[c][next].index >= 0) jacobian(row, linear_[c][next].index) = 1;
     }
+    ++next;
   };
   for (std::size_t l = 0; l < shapes_.size(); ++l) {
     const Shape& shape = shapes_[l];
@@ -256,9 +263,9 @@ Eigen::MatrixXd Layout::ReportJacobian(const double* u) const {
       }
     }
     row += 5;
-    add_linear(l);
+    for (std::size_t k = 0; k < FresnelParameters(recipe_.model.lobes[l].fresnel); ++k) add_linear();
   }
-  if (diffuse) add_linear(shapes_.size());
+  if (recipe_.model.diffuse != Diffuse::kNone) add_linear();
   return jacobian;
 }
 

@@ -2,8 +2,8 @@
 //
 // Shape. A free ellipsoid moves in slope coordinates (off_center.h), which cover it once and without singularities.
 // Where the choice of NDF or the recipe fixes, bounds or ties single angles or alphas, the lobe moves in ln alpha and
-// the angles that are left. Amplitudes (f0 or scale) and diffuse albedos are coordinates of their own, one a channel or
-// one for all.
+// the angles that are left. Fresnel parameters and diffuse albedos are coordinates of their own, one a channel or one
+// for all.
 #pragma once
 
 #include <string>
@@ -29,7 +29,7 @@ class Layout {
   std::size_t size() const { return coordinates_.size(); }
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
   std::size_t channels() const { return channels_; }
-  // Coordinates [0, shape_size()) belong to shapes, lobe by lobe; the rest are amplitudes and albedos.
+  // Coordinates [0, shape_size()) belong to shapes, lobe by lobe; the rest are Fresnel parameters and albedos.
   std::size_t shape_size() const { return shape_size_; }
   const Recipe& recipe() const { return recipe_; }
   // True where the lobe moves in slope coordinates.
@@ -38,8 +38,8 @@ class Layout {
   // The model at `u`, with the Jacobians of the shapes.
   KernelModel ToKernel(const double* u) const;
 
-  // Coordinates of lobe shapes given as ellipsoids, amplitudes and albedos [lobe][channel], [channel]; fixed ones are
-  // ignored, all are moved into the bounds.
+  // Coordinates of lobe shapes given as ellipsoids, Fresnel parameters and albedos at the start that the recipe or the
+  // parameter table gives; fixed ones are ignored, all are moved into the bounds.
   std::vector<double> FromShapes(const std::vector<Ellipsoid>& shapes) const;
 
   // Gauss-Newton matrix J^T J and gradient J^T r in solver coordinates from the sums over samples.
@@ -48,12 +48,14 @@ class Layout {
   // coordinate.
   std::vector<std::vector<double>> GatherScores(const std::vector<std::vector<double>>& scores) const;
 
-  // Entry of an amplitude or albedo in the solver's coordinates; -1: fixed, then `value`.
+  // Entry of a Fresnel parameter or albedo in the solver's coordinates; -1: fixed, then `value`. Most enter f_r
+  // linearly.
   struct Linear {
     int index = -1;
     double value = 0;
+    double start = 0;
   };
-  // Linear parts of a channel: one a lobe, then the diffuse albedo if the model has one.
+  // Those of a channel: the lobes' Fresnel parameters, then the diffuse albedo if the model has one.
   const std::vector<Linear>& linear(std::size_t channel) const { return linear_[channel]; }
 
   // Reported values at `u`, inside units, in the order of Parameters(model).
@@ -73,6 +75,9 @@ class Layout {
 
   void AddShape(std::size_t lobe, const std::vector<Parameter>& parameters, std::size_t first_parameter);
   void AddLinear(const Parameter& parameter, const ParameterRecipe& entry, const std::vector<std::string>& channels);
+  double Value(const Linear& linear, const double* u) const {
+    return linear.index < 0 ? linear.value : u[linear.index];
+  }
   Ellipsoid EllipsoidAt(const Shape& shape, const double* u) const;
   SlopeCoordinates SlopeAt(const Shape& shape, const double* u) const;
 

@@ -69,7 +69,7 @@ std::vector<Ellipsoid> WithGivenStarts(std::vector<Ellipsoid> candidates, const 
   for (Ellipsoid& shape : candidates) {
     double* entries[] = {&shape.alpha_x, &shape.alpha_y, &shape.theta_x, &shape.theta_y, &shape.theta_z};
     for (std::size_t i = 0; i < 5; ++i) {
-      const std::vector<double>& start = recipe.parameters[6 * lobe + i].start;
+      const std::vector<double>& start = recipe.parameters[FirstParameter(recipe.model, lobe) + i].start;
       if (!start.empty()) *entries[i] = start[0];
     }
     const bool seen = std::any_of(distinct.begin(), distinct.end(), [&](const Ellipsoid& other) {
@@ -142,9 +142,9 @@ std::vector<std::size_t> StratifiedSubsample(std::size_t samples, std::size_t co
 
 std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double plane_azimuth) {
   std::vector<Ellipsoid> tilts = {{1, 1, 0, 0, ndf == Ndf::kGgxTilted ? -plane_azimuth : 0.0}};
-  if (ndf == Ndf::kGgxTilted || ndf == Ndf::kEllipsoid) {
+  if (IsTilted(ndf)) {
     const Vec3 peak = PeakNormal(samples);
-    if (ndf == Ndf::kEllipsoid) {
+    if (ndf != Ndf::kGgxTilted) {
       tilts.push_back({1, 1, std::asin(std::clamp(peak.y, -1.0, 1.0)), std::atan2(-peak.x, peak.z), 0});
     } else {
       const double along = peak.x * std::cos(plane_azimuth) + peak.y * std::sin(plane_azimuth);
@@ -157,7 +157,7 @@ std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double p
       Ellipsoid shape = tilt;
       shape.alpha_x = shape.alpha_y = alpha;
       shapes.push_back(shape);
-      if (ndf == Ndf::kGgx || ndf == Ndf::kGgxTilted) continue;
+      if (IsRound(ndf)) continue;
       for (const double degrees : {0.0, 45.0, 90.0, -45.0}) {
         shape.alpha_x = std::min(1.0, alpha * std::sqrt(kAspect));
         shape.alpha_y = alpha / std::sqrt(kAspect);
@@ -201,7 +201,7 @@ std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, co
     for (const std::vector<Ellipsoid>& tuple : tuples) {
       for (const Ellipsoid& shape : candidates) {
         // Lobes are interchangeable: narrower ones first; and of several lobes only isotropic candidates are combined.
-        const bool given = !recipe.parameters[6 * l].start.empty();
+        const bool given = !recipe.parameters[FirstParameter(recipe.model, l)].start.empty();
         if (!given && !tuple.empty() && shape.alpha_x <= tuple.back().alpha_x) continue;
         if (!given && recipe.model.lobes.size() > 1 && shape.alpha_x != shape.alpha_y) continue;
         longer.push_back(tuple);

@@ -29,9 +29,11 @@ Json Numbers(const std::vector<double>& values, bool per_channel, double factor)
 Json ModelToJson(const Model& model) {
   Json lobes = Json::array();
   for (const Lobe& lobe : model.lobes) {
-    lobes.push_back({{"ndf", NameOf(NdfChoices(), lobe.ndf)},
-                     {"masking", NameOf(MaskingChoices(), lobe.masking)},
-                     {"fresnel", NameOf(FresnelChoices(), lobe.fresnel)}});
+    Json entry = {{"ndf", NameOf(NdfChoices(), lobe.ndf)},
+                  {"masking", NameOf(MaskingChoices(), lobe.masking)},
+                  {"fresnel", NameOf(FresnelChoices(), lobe.fresnel)}};
+    if (!lobe.metal.empty()) entry["metal"] = lobe.metal;
+    lobes.push_back(entry);
   }
   return {{"lobes", lobes}, {"diffuse", NameOf(DiffuseChoices(), model.diffuse)}};
 }
@@ -145,10 +147,12 @@ Model ReadModel(const Reader& reader) {
   for (const Json& lobe : reader.Member(json, "lobes")) {
     model.lobes.push_back({reader.GetChoice(lobe, "ndf", NdfChoices()),
                            reader.GetChoice(lobe, "masking", MaskingChoices()),
-                           reader.GetChoice(lobe, "fresnel", FresnelChoices())});
+                           reader.GetChoice(lobe, "fresnel", FresnelChoices()),
+                           lobe.contains("metal") ? reader.Get<std::string>(lobe, "metal") : ""});
   }
   model.diffuse = reader.GetChoice(json, "diffuse", DiffuseChoices());
   if (model.lobes.empty()) reader.Fail("model has no lobe");
+  if (const std::string why = WhyNotEvaluable(model); !why.empty()) reader.Fail(why);
   return model;
 }
 

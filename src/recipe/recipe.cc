@@ -1,6 +1,9 @@
 #include "lobefit/recipe/recipe.h"
 
-#include "lobefit/math/vec.h"
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/core/optical_constants.h"
 
 namespace lobefit {
 
@@ -44,6 +47,33 @@ Recipe DefaultRecipe(const Model& model, const std::string& name) {
   recipe.model = model;
   recipe.parameters.resize(Parameters(model).size());
   return recipe;
+}
+
+Recipe WithMetals(const Recipe& recipe, const std::vector<double>& wavelengths_nm, std::size_t channels) {
+  Recipe resolved = recipe;
+  const std::vector<double>& wavelengths = recipe.wavelengths_nm.empty() ? wavelengths_nm : recipe.wavelengths_nm;
+  for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
+    const std::string& metal = recipe.model.lobes[l].metal;
+    if (metal.empty()) continue;
+    if (wavelengths.size() != channels) {
+      throw InputError(
+          fmt::format("recipe '{}': metal = '{}' needs one wavelength a channel, {} are known of {} channels; write "
+                      "wavelengths_nm = "
+                      "[...] into the recipe, or leave `metal` out and let eta and k be fitted",
+                      recipe.name, metal, wavelengths.size(), channels));
+    }
+    const std::size_t first = FirstParameter(recipe.model, l) + kShapeParameters;
+    ParameterRecipe& eta = resolved.parameters[first];
+    ParameterRecipe& k = resolved.parameters[first + 1];
+    eta.fixed.clear();
+    k.fixed.clear();
+    for (const double wavelength : wavelengths) {
+      const ConductorIndex index = MetalIndexAt(metal, wavelength).index;
+      eta.fixed.push_back(index.eta);
+      k.fixed.push_back(index.k);
+    }
+  }
+  return resolved;
 }
 
 Recipe AutomaticRecipe(const MeasurementTraits& traits) {

@@ -51,6 +51,8 @@ struct Recipe {
   Loss loss = Loss::kNone;
   double loss_scale = 0.1;
   double theta_max = 80 * 3.14159265358979323846 / 180;  // radians
+  // Of the channels, for metals; empty: the measurement's own.
+  std::vector<double> wavelengths_nm;
   // Azimuth of the plane of an in-plane measurement, for ggx-tilted.
   double plane_azimuth = 0;
 
@@ -67,6 +69,10 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name);
 
 // The recipe as TOML that ParseRecipe reads back.
 std::string ToToml(const Recipe& recipe);
+
+// The recipe with eta and k of lobes of a metal fixed to the published values at the channels' wavelengths, which are
+// the recipe's own or else `wavelengths_nm`. Throws InputError where there are none, or the metal is not known there.
+Recipe WithMetals(const Recipe& recipe, const std::vector<double>& wavelengths_nm, std::size_t channels);
 
 // What an automatic choice needs to know of a measurement.
 struct MeasurementTraits {

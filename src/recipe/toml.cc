@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -9,6 +10,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/core/optical_constants.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/recipe/recipe.h"
 
@@ -142,11 +144,23 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
 }
 
 Lobe ReadLobe(const toml::table& table, const Place& place) {
-  CheckKeys(table, {"ndf", "masking", "fresnel"}, "of a lobe", place);
+  CheckKeys(table, {"ndf", "masking", "fresnel", "metal"}, "of a lobe", place);
   Lobe lobe;
   ReadChoice(table, "ndf", NdfChoices(), place, &lobe.ndf);
   ReadChoice(table, "masking", MaskingChoices(), place, &lobe.masking);
   ReadChoice(table, "fresnel", FresnelChoices(), place, &lobe.fresnel);
+  if (const toml::node* metal = table.get("metal")) {
+    std::vector<std::string> names;
+    for (const MetalInfo& info : Metals()) {
+      names.push_back(info.symbol);
+      if (info.name != info.symbol) names.push_back(info.name);
+    }
+    lobe.metal = metal->value<std::string>().value_or("?");
+    if (!metal->is_string() || std::find(names.begin(), names.end(), lobe.metal) == names.end()) {
+      place.Fail(metal->source(), fmt::format("metal = '{}' is unknown{}; allowed: {}", lobe.metal,
+                                              DidYouMean(lobe.metal, names), Join(names)));
+    }
+  }
   return lobe;
 }
 
@@ -171,7 +185,8 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
   } catch (const toml::parse_error& error) {
     place.Fail(error.source(), std::string(error.description()));
   }
-  CheckKeys(root, {"name", "metric", "weighting", "loss", "theta_max_deg", "diffuse", "lobe", "parameters"},
+  CheckKeys(root,
+            {"name", "metric", "weighting", "loss", "theta_max_deg", "wavelengths_nm", "diffuse", "lobe", "parameters"},
             "of a recipe", place);
   Model model;
   if (const toml::node* lobes = root.get("lobe")) {
@@ -183,6 +198,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
   }
   if (model.lobes.empty()) place.Fail(root.source(), "a recipe needs at least one [[lobe]]");
   ReadChoice(root, "diffuse", DiffuseChoices(), place, &model.diffuse);
+  if (const std::string why = WhyNotEvaluable(model); !why.empty()) place.Fail(root.get("lobe")->source(), why);
   Recipe recipe = DefaultRecipe(model, std::filesystem::path(file_name).stem().string());
   if (const toml::node* name = root.get("name")) {
     if (!name->is_string()) place.Fail(name->source(), "'name' must be a string");
@@ -196,6 +212,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
       place.Fail(root.get("theta_max_deg")->source(), "theta_max_deg must lie in (0, 90]");
     recipe.theta_max = *limit * kPi / 180;
   }
+  recipe.wavelengths_nm = Numbers(root, "wavelengths_nm", true, 1, place);
   if (const toml::table* table = Table(root, "parameters", place)) {
     const std::vector<Parameter> parameters = Parameters(model);
     std::vector<std::string> names;
@@ -223,10 +240,16 @@ std::string ToToml(const Recipe& recipe) {
     text += fmt::format("loss = {{ kind = \"{}\", scale = {} }}\n", NameOf(LossChoices(), recipe.loss),
                         FormatDouble(recipe.loss_scale));
   }
+  if (!recipe.wavelengths_nm.empty()) {
+    std::vector<std::string> numbers;
+    for (const double wavelength : recipe.wavelengths_nm) numbers.push_back(FormatDouble(wavelength));
+    text += "wavelengths_nm = [" + Join(numbers) + "]\n";
+  }
   for (const Lobe& lobe : recipe.model.lobes) {
     text +=
         fmt::format("\n[[lobe]]\nndf = \"{}\"\nmasking = \"{}\"\nfresnel = \"{}\"\n", NameOf(NdfChoices(), lobe.ndf),
                     NameOf(MaskingChoices(), lobe.masking), NameOf(FresnelChoices(), lobe.fresnel));
+    if (!lobe.metal.empty()) text += fmt::format("metal = \"{}\"\n", lobe.metal);
   }
   text += "\n[parameters]\n";
   const std::vector<Parameter> parameters = Parameters(recipe.model);

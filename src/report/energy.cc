@@ -3,32 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobefit/core/ggx_lobe.h"
+#include "lobefit/core/diffuse_facets.h"
+#include "lobefit/core/lobe.h"
 #include "lobefit/core/slope_ndf.h"
 #include "lobefit/math/directions.h"
+#include "lobefit/math/quadrature.h"
 
 namespace lobefit {
 namespace {
 
 constexpr int kRings = 160, kSteps = 64;
-constexpr std::size_t kValuesOfALobe = 6;
+constexpr int kDiffuseRings = 24, kDiffuseSteps = 48;
 
-SlopeCoordinates ShapeOf(const ParameterValues& values, std::size_t lobe) {
-  const std::size_t at = lobe * kValuesOfALobe;
+SlopeCoordinates ShapeOf(const Model& model, const ParameterValues& values, std::size_t lobe) {
+  const std::size_t at = FirstParameter(model, lobe);
   return SlopeCoordinatesFromEllipsoid(
       {values[at][0], values[at + 1][0], values[at + 2][0], values[at + 3][0], values[at + 4][0]});
 }
 
-// Sums of the specular factor and of the factor times (1 - cos_d)^5 over wo, each times cos(theta_o).
-struct Moments {
-  double all = 0, schlick = 0;
-};
-
-// Facets are taken at the slopes of equal probability of P22 (midpoints in probability and angle): wo is the mirror
-// image of wi at each.
-Moments Integrate(const SlopeCoordinates& shape, Masking masking, const Vec3& wi) {
+// Calls each(m, share) for facets m at the slopes of equal probability of GGX's P22 (midpoints in probability and
+// angle); the mean of share * g(m) is the integral of g over normals.
+template <class Each>
+void ForFacets(const SlopeCoordinates& shape, const Each& each) {
   const SlopeFrame frame(shape);
-  Moments moments;
   for (int i = 0; i < kRings; ++i) {
     const double u = (i + 0.5) / kRings, rho = std::sqrt(u / (1 - u));
     for (int k = 0; k < kSteps; ++k) {
@@ -37,21 +34,37 @@ Moments Integrate(const SlopeCoordinates& shape, Masking masking, const Vec3& wi
       const double x = frame.slope_x + frame.a * rho * std::cos(t);
       const double y = frame.slope_y + frame.b * rho * std::cos(t) + frame.c * rho * std::sin(t);
       const Vec3 m = Normalized(Vec3{-x, -y, 1.0});
-      const double along = Dot(wi, m);
-      const Vec3 wo = Reflect(wi, m);
-      if (along <= 0 || wo.z <= 0) continue;
-      double cos_d = 0;
-      const double specular = GgxLobe(wi, wo, shape, masking, &cos_d, nullptr);
-      // d wo = 4 (wi.m) dm and P22 dslope = D (m.n) dm.
-      const double share = specular * wo.z * 4 * along / (SlopeD(frame, m) * m.z);
-      const double s = 1 - cos_d, s2 = s * s;
-      moments.all += share;
-      moments.schlick += share * s2 * s2 * s;
+      each(m, 1 / (SlopeD(frame, m) * m.z * kRings * kSteps));  // P22 dslope = D (m.n) dm
     }
   }
-  moments.all /= kRings * kSteps;
-  moments.schlick /= kRings * kSteps;
-  return moments;
+}
+
+// Adds the albedo of the lobe to `albedo`, a channel, with F of parameters[channel].
+void AddLobe(const Lobe& lobe, const SlopeCoordinates& shape, Fresnel fresnel,
+             const std::vector<std::vector<double>>& parameters, const Vec3& wi, std::vector<double>* albedo) {
+  ForFacets(shape, [&](const Vec3& m, double share) {
+    // wo is the mirror image of wi at the facet.
+    const double along = Dot(wi, m);
+    const Vec3 wo = Reflect(wi, m);
+    if (along <= 0 || wo.z <= 0) return;
+    double cos_d = 0;
+    const double specular = SpecularLobe(wi, wo, lobe, shape, &cos_d, nullptr);
+    const double weight = specular * wo.z * 4 * along * share;  // d wo = 4 (wi.m) dm
+    for (std::size_t c = 0; c < albedo->size(); ++c)
+      (*albedo)[c] += weight * FresnelFactor(fresnel, parameters[c].data(), cos_d, nullptr);
+  });
+}
+
+double DiffuseFacetsAlbedo(const DiffuseFacets& facets, const Vec3& wi) {
+  static const QuadratureRule rule = GaussLegendre(kDiffuseRings);
+  return Integrate(rule, 0, 1, [&](double u) {  // u = sin^2 theta_o
+    double ring = 0;
+    for (int k = 0; k < kDiffuseSteps; ++k) {
+      const double phi = 2 * kPi * (k + 0.5) / kDiffuseSteps, sin = std::sqrt(u);
+      ring += facets.Evaluate(wi, {sin * std::cos(phi), sin * std::sin(phi), std::sqrt(1 - u)}, nullptr);
+    }
+    return ring * kPi / kDiffuseSteps;
+  });
 }
 
 }  // namespace
@@ -59,26 +72,42 @@ Moments Integrate(const SlopeCoordinates& shape, Masking masking, const Vec3& wi
 std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
                                       const Vec3& wi) {
   std::vector<double> albedo(channels, 0.0);
-  if (model.diffuse == Diffuse::kLambert) albedo = values.back();
+  if (model.diffuse != Diffuse::kNone) albedo = values.back();
+  if (model.diffuse == Diffuse::kMicrofacet) {
+    const double unit = DiffuseFacetsAlbedo(DiffuseFacets(model.lobes[0], ShapeOf(model, values, 0)), wi);
+    for (double& a : albedo) a *= unit;
+  }
   for (std::size_t lobe = 0; lobe < model.lobes.size(); ++lobe) {
-    const Moments moments = Integrate(ShapeOf(values, lobe), model.lobes[lobe].masking, wi);
-    const std::vector<double>& amplitude = values[lobe * kValuesOfALobe + 5];
+    const Fresnel fresnel = model.lobes[lobe].fresnel;
+    std::vector<std::vector<double>> parameters(channels);
     for (std::size_t c = 0; c < channels; ++c) {
-      const double a = amplitude[c];
-      albedo[c] += model.lobes[lobe].fresnel == Fresnel::kSchlick ? a * moments.all + (1 - a) * moments.schlick
-                                                                  : a * moments.all;
+      for (std::size_t k = 0; k < FresnelParameters(fresnel); ++k)
+        parameters[c].push_back(values[FirstParameter(model, lobe) + kShapeParameters + k][c]);
     }
+    AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), fresnel, parameters, wi, &albedo);
   }
   return albedo;
 }
 
 double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& wi) {
-  return Integrate(ShapeOf(values, lobe), model.lobes[lobe].masking, wi).all;
+  std::vector<double> albedo = {0};
+  AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), Fresnel::kNone, {{1.0}}, wi, &albedo);
+  return albedo[0];
 }
 
 double WeakFurnace(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& u) {
-  if (model.lobes[lobe].masking == Masking::kSmithUnclamped) return 1;
-  return std::min(1.0, SlopeSigma(SlopeFrame(ShapeOf(values, lobe)), u) / u.z);
+  const Masking masking = model.lobes[lobe].masking;
+  if (masking == Masking::kSmithUnclamped || masking == Masking::kVCavity) return 1;
+  const SlopeCoordinates shape = ShapeOf(model, values, lobe);
+  const std::unique_ptr<NormalDistribution> distribution = DistributionOf(model.lobes[lobe].ndf, shape, nullptr);
+  if (masking <= Masking::kSmithHeightDirection) return std::min(1.0, distribution->Sigma(u) / u.z);
+  const Shadowing shadowing = ShadowingOf(masking, shape);
+  double furnace = 0;
+  ForFacets(shape, [&](const Vec3& m, double share) {
+    const double along = Dot(u, m);
+    if (along > 0) furnace += MaskingG1(*distribution, shadowing, u, m) * along * distribution->D(m) * share / u.z;
+  });
+  return furnace;
 }
 
 }  // namespace lobefit

@@ -9,8 +9,8 @@
 namespace lobefit {
 
 // Directional albedo, integral of f_r cos(theta_o) over wo, a channel; wi away from the surface. The specular part is
-// integrated over the lobe's own slopes (points where the visible facets are), 160 x 64 points a lobe; the Lambertian
-// part exactly.
+// integrated over the lobe's own slopes (points where the visible facets are), 160 x 64 points a lobe; a Lambertian part
+// exactly, diffuse microfacets over 24 x 48 directions.
 std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
                                       const Vec3& wi);
 
@@ -18,7 +18,8 @@ std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues&
 double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& wi);
 
 // Weak white furnace [Heitz eq 36], over the whole sphere of reflected directions: min(1, sigma(u) / cos) for a clamped
-// G1, 1 for an unclamped one [math.md section 5].
+// Smith G1, 1 for an unclamped one and for V-cavities [math.md section 5]; over the points above (error below 1 %) for
+// the maskings that do not come from a surface.
 double WeakFurnace(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& u);
 
 }  // namespace lobefit

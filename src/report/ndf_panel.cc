@@ -5,7 +5,7 @@
 #include <limits>
 #include <memory>
 
-#include "lobefit/core/off_center.h"
+#include "lobefit/core/lobe.h"
 #include "lobefit/core/slope_ndf.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/report/axes.h"
@@ -17,11 +17,28 @@ namespace {
 
 constexpr int kCells = 72;
 constexpr double kDecades = 3;
-// Contours where the density is this share of its peak. P22 = (1 + rho^2)^-2 of the peak, rho the distance in units of
-// the widths.
+// Contours where the density is this share of its peak.
 constexpr std::array<double, 3> kLevels = {0.5, 0.1, 0.01};
 
-double Radius(double level) { return std::sqrt(1 / std::sqrt(level) - 1); }
+// Density of slopes at a normal.
+double SlopeDensity(const NormalDistribution& distribution, const Vec3& m) {
+  return distribution.D(m) * m.z * m.z * m.z * m.z;
+}
+
+Vec3 NormalAt(double slope_x, double slope_y) { return Normalized(Vec3{-slope_x, -slope_y, 1.0}); }
+
+// The share of the peak at rho widths from the mean, which all lobes of slope space have in common, inverted.
+double Radius(Ndf ndf, const SlopeCoordinates& shape, double level) {
+  const SlopeCoordinates centred = {{0, 0, shape.v[2], 0, shape.v[2]}};
+  const std::unique_ptr<NormalDistribution> distribution = DistributionOf(ndf, centred, nullptr);
+  const double a = std::exp(shape.v[2]), peak = SlopeDensity(*distribution, {0, 0, 1});
+  double low = 0, high = 100;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = (low + high) / 2;
+    (SlopeDensity(*distribution, NormalAt(a * middle, 0)) > level * peak ? low : high) = middle;
+  }
+  return low;
+}
 
 struct NdfPicture {
   const ReportData& data;
@@ -60,10 +77,12 @@ void FillGaps(std::vector<float>* density) {
 void FindDensity(NdfPicture* ndf) {
   const ReportData& data = ndf->data;
   const Samples& samples = data.measurement.samples;
-  const SlopeFrame frame(data.fitted.lobe_shapes()[0]);
-  const double peak = 1 / (frame.a * frame.c);  // times 1 / pi, as below
+  const SlopeCoordinates& shape = data.fitted.lobe_shapes()[0];
+  const std::unique_ptr<NormalDistribution> distribution =
+      DistributionOf(data.material.model.lobes[0].ndf, shape, nullptr);
+  const double peak = SlopeDensity(*distribution, NormalAt(shape.v[0], shape.v[1]));
   std::vector<double> diffuse(data.channels(), 0.0);
-  if (data.material.model.diffuse == Diffuse::kLambert) diffuse = data.material.Values().back();
+  if (data.material.model.diffuse != Diffuse::kNone) diffuse = data.material.Values().back();
   std::vector<double> sums(kCells * kCells), counts(kCells * kCells);
   std::vector<double> radial(kCells), radial_counts(kCells);
   constexpr std::size_t kTaken = 400000;
@@ -75,8 +94,7 @@ void FindDensity(NdfPicture* ndf) {
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = static_cast<double>(data.fitted_values[c][i]);
     const double lambert = data.Display(diffuse) * kInvPi, specular = data.Display(f) - lambert;
     if (!(specular > 0)) continue;
-    const double d =
-        SlopeD(frame, h) * std::pow(h.z, 4) * kPi * (data.Display(samples.values, i) - lambert) / specular / peak;
+    const double d = SlopeDensity(*distribution, h) * (data.Display(samples.values, i) - lambert) / specular / peak;
     if (data.measurement.isotropic) {
       const auto bin = static_cast<std::size_t>(std::hypot(x, y) / ndf->half * (kCells / 2.0));
       if (bin < radial.size()) radial[bin] += d, radial_counts[bin] += 1;
@@ -152,12 +170,15 @@ void Draw(const NdfPicture& ndf, Canvas* canvas, const Box& content) {
     canvas->Line({frame.x, axes.MapY(0)}, {frame.right(), axes.MapY(0)}, {style::kFaint, 0.5, 1, 4, 3});
     const std::array<Rgb, 3> colors = {style::kInk, style::kVermilion, style::kPurple};
     for (std::size_t lobe = 0; lobe < data.fitted.lobe_shapes().size(); ++lobe) {
-      const SlopeFrame shape(data.fitted.lobe_shapes()[lobe]);
+      const SlopeCoordinates& coordinates = data.fitted.lobe_shapes()[lobe];
+      const Ndf kind = data.material.model.lobes[lobe].ndf;
+      const SlopeFrame shape(coordinates);
       const Rgb color = colors[lobe % colors.size()];
       for (const double level : kLevels) {
+        const double radius = Radius(kind, coordinates, level);
         std::vector<Point> line;
         for (int k = 0; k <= 180; ++k) {
-          const Point s = OnEllipse(shape, Radius(level), k * kPi / 90);
+          const Point s = OnEllipse(shape, radius, k * kPi / 90);
           line.push_back(axes.Map(s.x, s.y));
         }
         canvas->Polyline(line, {color, 1});
@@ -167,7 +188,8 @@ void Draw(const NdfPicture& ndf, Canvas* canvas, const Box& content) {
       const double turn = 0.5 * std::atan2(2 * q12, q11 - q22), mean = (q11 + q22) / 2,
                    part = std::hypot((q11 - q22) / 2, q12);
       for (int k = 0; k < 2; ++k) {
-        const double length = Radius(kLevels[1]) * std::sqrt(std::max(0.0, mean + (k == 0 ? part : -part))),
+        const double length = Radius(kind, coordinates, kLevels[1]) *
+                              std::sqrt(std::max(0.0, mean + (k == 0 ? part : -part))),
                      angle = turn + k * kPi / 2;
         const double dx = length * std::cos(angle), dy = length * std::sin(angle);
         canvas->Line(axes.Map(shape.slope_x - dx, shape.slope_y - dy), axes.Map(shape.slope_x + dx, shape.slope_y + dy),
@@ -196,10 +218,10 @@ std::optional<Panel> NdfPanel(const ReportData& data) {
   if (shapes.empty()) return std::nullopt;
   const auto ndf = std::make_shared<NdfPicture>(NdfPicture{data, 0, 0, 1, {}});
   double low_x = 0, high_x = 0, low_y = 0, high_y = 0;  // the normal is in the picture
-  for (const SlopeCoordinates& coordinates : shapes) {
-    const SlopeFrame shape(coordinates);
-    const double reach_x = 1.08 * Radius(kLevels[2]) * shape.a,
-                 reach_y = 1.08 * Radius(kLevels[2]) * std::hypot(shape.b, shape.c);
+  for (std::size_t lobe = 0; lobe < shapes.size(); ++lobe) {
+    const SlopeFrame shape(shapes[lobe]);
+    const double reach = 1.08 * Radius(data.material.model.lobes[lobe].ndf, shapes[lobe], kLevels[2]);
+    const double reach_x = reach * shape.a, reach_y = reach * std::hypot(shape.b, shape.c);
     low_x = std::min(low_x, shape.slope_x - reach_x), high_x = std::max(high_x, shape.slope_x + reach_x);
     low_y = std::min(low_y, shape.slope_y - reach_y), high_y = std::max(high_y, shape.slope_y + reach_y);
   }

@@ -51,6 +51,21 @@ TEST(Recipe, ReadsEveryKey) {
 TEST(Recipe, TomlRoundTrip) {
   const std::string once = ToToml(ParseRecipe(kGood, "r.toml"));
   EXPECT_EQ(ToToml(ParseRecipe(once, "r.toml")), once);
+  const Recipe metal =
+      ParseRecipe("wavelengths_nm = [450, 650.5]\n[[lobe]]\nfresnel = \"conductor\"\nmetal = \"Au\"\n", "m");
+  EXPECT_THAT(metal.wavelengths_nm, testing::ElementsAre(450, 650.5));
+  EXPECT_EQ(metal.model.lobes[0].metal, "Au");
+  EXPECT_EQ(ToToml(ParseRecipe(ToToml(metal), "m")), ToToml(metal));
+}
+
+TEST(Recipe, MetalsNeedAWavelengthAChannel) {
+  const Recipe recipe = ParseRecipe("[[lobe]]\nfresnel = \"conductor\"\nmetal = \"Cu\"\n", "m");
+  EXPECT_THROW(WithMetals(recipe, {}, 3), InputError);
+  EXPECT_THROW(WithMetals(recipe, {450, 550, 1e6}, 3), InputError);
+  const Recipe resolved = WithMetals(recipe, {450, 550, 650}, 3);
+  ASSERT_EQ(resolved.parameters[5].fixed.size(), 3U);
+  // Copper's real part falls from the blue to the red.
+  EXPECT_GT(resolved.parameters[5].fixed[0], resolved.parameters[5].fixed[2]);
 }
 
 TEST(Recipe, RecipesOfTheLibraryAreValid) {
@@ -85,10 +100,17 @@ INSTANTIATE_TEST_SUITE_P(
     All, BadRecipe,
     testing::Values(
         BadCase{"[[lobe]]\nnfd = \"ggx\"\n",
-                "r.toml:2: unknown key 'nfd' of a lobe (did you mean 'ndf'?); allowed: ndf, masking, fresnel"},
+                "r.toml:2: unknown key 'nfd' of a lobe (did you mean 'ndf'?); allowed: ndf, masking, fresnel, metal"},
         BadCase{"[[lobe]]\nndf = \"ggxx\"\n",
                 "r.toml:2: ndf = 'ggxx' is unknown (did you mean 'ggx'?); allowed: ggx, ggx-tilted, ggx-anisotropic, "
-                "ellipsoid"},
+                "ellipsoid, beckmann, beckmann-anisotropic, beckmann-off-center, kagiwada-kalaba, spherical-gaussian"},
+        BadCase{"[[lobe]]\nmasking = \"v-cavity\"\n",
+                "r.toml:1: masking v-cavity needs a lobe about the normal, ellipsoid may tilt; use ndf ggx-anisotropic "
+                "or beckmann-anisotropic, or a Smith masking"},
+        BadCase{"[[lobe]]\nfresnel = \"conductor\"\nmetal = \"Unobtainium\"\n",
+                "r.toml:3: metal = 'Unobtainium' is unknown; allowed: Ag, silver, Al, aluminium, Au, gold, Cr, "
+                "chromium, Cu, "
+                "copper, Fe, iron, Ni, nickel, Ti, titanium, W, tungsten, brass, Cu70Zn30"},
         BadCase{"metric = 3\n[[lobe]]\n",
                 "r.toml:1: metric = '?' is unknown; allowed: log, cube-root, relative, cosine-l2, ngan, low-log"},
         BadCase{"[[lobe]]\n[parameters]\nalpha = { start = 1 }\n",

@@ -1,0 +1,121 @@
+// Every choice of the model table, fitted to noise-free data of its own and found again.
+#include <cmath>
+
+#include "tests/support/synthetic.h"
+#include <gtest/gtest.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/core/optical_constants.h"
+#include "lobefit/fit/fit.h"
+
+namespace lobefit {
+namespace {
+
+// Values for any model: shapes that the NDF has, Fresnel parameters that differ between the two channels.
+SyntheticCase TruthOf(const Model& model) {
+  SyntheticCase truth;
+  truth.model = model;
+  truth.channels = {"A", "B"};
+  for (std::size_t l = 0; l < model.lobes.size(); ++l) {
+    const Ndf ndf = model.lobes[l].ndf;
+    const double alpha = l == 0 ? 0.12 : 0.5;
+    const double theta_x = IsTilted(ndf) ? 0.03 : 0, theta_y = IsTilted(ndf) ? -0.05 : 0;
+    if (IsRound(ndf)) {
+      truth.values.insert(truth.values.end(), {{alpha}, {alpha}, {0}, {0}, {0}});
+    } else {
+      truth.values.insert(truth.values.end(), {{2 * alpha}, {alpha}, {theta_x}, {theta_y}, {0.4}});
+    }
+    switch (model.lobes[l].fresnel) {
+      case Fresnel::kSchlick:
+        truth.values.push_back({0.5, 0.3});
+        break;
+      case Fresnel::kConductor:
+        truth.values.insert(truth.values.end(), {{0.4, 1.5}, {3.5, 2.5}});
+        break;
+      case Fresnel::kDielectric:
+        truth.values.push_back({1.5, 1.8});
+        break;
+      case Fresnel::kNone:
+        truth.values.push_back({0.8, 0.4});
+        break;
+    }
+  }
+  if (model.diffuse != Diffuse::kNone) truth.values.push_back({0.2, 0.1});
+  return truth;
+}
+
+std::vector<Model> EveryChoice() {
+  std::vector<Model> models;
+  const auto add = [&](const Lobe& lobe, Diffuse diffuse) {
+    const Model model = {{lobe}, diffuse};
+    if (WhyNotEvaluable(model).empty()) models.push_back(model);
+  };
+  for (const Choice<Ndf>& ndf : NdfChoices()) {
+    if (ndf.value != Ndf::kGgxTilted) add({ndf.value}, Diffuse::kLambert);  // in-plane data: fit_test.cc
+  }
+  for (const Choice<Masking>& masking : MaskingChoices()) {
+    add({Ndf::kGgx, masking.value}, Diffuse::kLambert);
+    add({Ndf::kBeckmannOffCenter, masking.value}, Diffuse::kNone);
+  }
+  for (const Choice<Fresnel>& fresnel : FresnelChoices())
+    add({Ndf::kGgxAnisotropic, Masking::kSmithHeight, fresnel.value}, Diffuse::kLambert);
+  add({Ndf::kGgx}, Diffuse::kMicrofacet);
+  add({Ndf::kBeckmann}, Diffuse::kNone);
+  Model two = {{{Ndf::kGgx}, {Ndf::kBeckmann, Masking::kSmithSeparable, Fresnel::kNone}}, Diffuse::kLambert};
+  models.push_back(two);
+  return models;
+}
+
+class EveryModel : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(EveryModel, IsFoundAgain) {
+  const Model model = EveryChoice()[GetParam()];
+  const SyntheticCase truth = TruthOf(model);
+  GoniometerLayout layout = StandardLayout();
+  layout.polar_angles = {0.1, 0.4, 0.7, 1.0, 1.2};
+  layout.azimuths = {0, 1.1};
+  layout.detector_step = DegreesToRadians(12);
+  Measurement measurement = Synthetic(truth, layout, 0, 1);
+  FitOptions options;
+  options.subsample = 400;
+  const Material material = Fit(DefaultRecipe(model, "test"), options, &measurement);
+  EXPECT_TRUE(material.termination.converged) << material.termination.message;
+  for (std::size_t i = 0; i < truth.values.size(); ++i) {
+    for (std::size_t c = 0; c < truth.values[i].size(); ++c) {
+      const double expected = truth.values[i][c];
+      EXPECT_NEAR(material.parameters[i].values[c], expected, 1e-6 * (expected != 0 ? std::fabs(expected) : 1.0))
+          << Parameters(model)[i].name << " " << c;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, EveryModel, testing::Range<std::size_t>(0, EveryChoice().size()),
+                         [](const testing::TestParamInfo<std::size_t>& p) {
+                           const Model model = EveryChoice()[p.param];
+                           std::string name = std::string(NameOf(NdfChoices(), model.lobes[0].ndf)) + "_" +
+                                              NameOf(MaskingChoices(), model.lobes[0].masking) + "_" +
+                                              NameOf(FresnelChoices(), model.lobes[0].fresnel) + "_" +
+                                              NameOf(DiffuseChoices(), model.diffuse) + "_" +
+                                              std::to_string(model.lobes.size());
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name + "_" + std::to_string(p.param);
+                         });
+
+TEST(Metals, AreFixedAtTheirWavelengths) {
+  Model model = {{{Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kConductor, "Au"}}, Diffuse::kNone};
+  SyntheticCase truth = TruthOf(model);
+  truth.values[5] = {MetalIndexAt("Au", 450).index.eta, MetalIndexAt("Au", 650).index.eta};
+  truth.values[6] = {MetalIndexAt("Au", 450).index.k, MetalIndexAt("Au", 650).index.k};
+  Measurement measurement = Synthetic(truth, StandardLayout(), 0, 1);
+  Recipe recipe = DefaultRecipe(model, "gold");
+  EXPECT_THROW(Fit(recipe, {}, &measurement), InputError);  // no wavelengths
+  recipe.wavelengths_nm = {450, 650};
+  const Material material = Fit(recipe, {}, &measurement);
+  EXPECT_EQ(material.parameters[5].values, truth.values[5]);
+  EXPECT_EQ(material.parameters[6].values, truth.values[6]);
+  EXPECT_FALSE(material.parameters[5].free);
+  EXPECT_NEAR(material.parameters[0].values[0], 0.12, 1e-8);
+}
+
+}  // namespace
+}  // namespace lobefit
