@@ -23,6 +23,7 @@ struct Verb {
 constexpr Verb kVerbs[] = {
     {"info", "describe a measurement file", SetUpInfo},
     {"fit", "fit a reflectance model to a measurement file", SetUpFit},
+    {"compare", "fit several recipes, judge them on held-out directions, recommend one", SetUpCompare},
     {"report", "draw the report of a fitted material against its measurement again", SetUpReport},
     {"convert", "write a measurement file in another format, and say what was lost", SetUpConvert},
     {"synth", "make a synthetic measurement file from a material or recipe", SetUpSynth},

@@ -39,26 +39,28 @@ void Override(const std::string& text, const char* option, const std::vector<Cho
 
 }  // namespace
 
+std::vector<std::string> RecipeNames() {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(RecipeFolder(), error)) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 Recipe LoadRecipe(const std::string& name_or_path) {
   std::error_code error;
   if (std::filesystem::exists(name_or_path, error)) return ReadRecipe(name_or_path);
   const std::filesystem::path folder = RecipeFolder();
   const std::filesystem::path named = folder / (name_or_path + ".toml");
   if (name_or_path.find('/') == std::string::npos && std::filesystem::exists(named, error)) return ReadRecipe(named);
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
+  const std::vector<std::string> names = RecipeNames();
   throw InputError(fmt::format("recipe '{}' is neither a file nor a recipe of {}{}; allowed: auto, {}",
                                Excerpt(name_or_path), folder.string(), DidYouMean(name_or_path, names), Join(names)));
 }
 
-void RecipeOptions::AddTo(CLI::App* app) {
-  const std::string group = "What to fit";
-  app->add_option("--recipe", recipe_,
-                  "a recipe by name or a .toml file; 'auto' (default) takes what the measurement can determine")
-      ->group(group);
+void RecipeOverrides::AddTo(CLI::App* app, const std::string& group) {
   app->add_option("--metric", metric_, "overrides the recipe: " + Join(Names(MetricChoices())))->group(group);
   app->add_option("--weighting", weighting_, "overrides the recipe: " + Join(Names(WeightingChoices())))->group(group);
   app->add_option("--theta-max", theta_max_deg_,
@@ -67,13 +69,25 @@ void RecipeOptions::AddTo(CLI::App* app) {
       ->group(group);
 }
 
+void RecipeOverrides::Apply(Recipe* recipe) const {
+  Override(metric_, "--metric", MetricChoices(), &recipe->metric);
+  Override(weighting_, "--weighting", WeightingChoices(), &recipe->weighting);
+  if (theta_max_deg_ > 0) recipe->theta_max = DegreesToRadians(theta_max_deg_);
+}
+
+void RecipeOptions::AddTo(CLI::App* app) {
+  const std::string group = "What to fit";
+  app->add_option("--recipe", recipe_,
+                  "a recipe by name or a .toml file; 'auto' (default) takes what the measurement can determine")
+      ->group(group);
+  overrides_.AddTo(app, group);
+}
+
 Recipe RecipeOptions::Choose(const Measurement& measurement) const {
   const MeasurementTraits traits = TraitsOf(measurement);
   Recipe recipe = recipe_ == "auto" ? AutomaticRecipe(traits) : LoadRecipe(recipe_);
   recipe.plane_azimuth = traits.plane_azimuth;
-  Override(metric_, "--metric", MetricChoices(), &recipe.metric);
-  Override(weighting_, "--weighting", WeightingChoices(), &recipe.weighting);
-  if (theta_max_deg_ > 0) recipe.theta_max = DegreesToRadians(theta_max_deg_);
+  overrides_.Apply(&recipe);
   return recipe;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -9,6 +10,18 @@
 #include "lobefit/recipe/recipe.h"
 
 namespace lobefit {
+
+// Single choices that override those of a recipe.
+class RecipeOverrides {
+ public:
+  void AddTo(CLI::App* app, const std::string& group);
+  // Throws UsageError.
+  void Apply(Recipe* recipe) const;
+
+ private:
+  std::string metric_, weighting_;
+  double theta_max_deg_ = 0;
+};
 
 class RecipeOptions {
  public:
@@ -18,9 +31,12 @@ class RecipeOptions {
   Recipe Choose(const Measurement& measurement) const;
 
  private:
-  std::string recipe_ = "auto", metric_, weighting_;
-  double theta_max_deg_ = 0;
+  std::string recipe_ = "auto";
+  RecipeOverrides overrides_;
 };
+
+// Names of the recipes of the library, sorted.
+std::vector<std::string> RecipeNames();
 
 // A recipe file, or a recipe of the library by its name ("ellipsoid"). Throws InputError that lists the names.
 Recipe LoadRecipe(const std::string& name_or_path);

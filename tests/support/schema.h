@@ -1,4 +1,4 @@
-// Validation of documents against the JSON Schema of materials.
+// Validation of documents against the JSON Schemas that are installed.
 #pragma once
 
 #include <fstream>
@@ -13,8 +13,9 @@
 
 namespace lobefit {
 
-inline testing::AssertionResult FollowsSchema(const std::string& document) {
-  std::ifstream in(std::string(LOBEFIT_SOURCE_DIR) + "/src/material/material.schema.json");
+inline testing::AssertionResult FollowsSchema(const std::string& document,
+                                              const std::string& schema_file = "src/material/material.schema.json") {
+  std::ifstream in(std::string(LOBEFIT_SOURCE_DIR) + "/" + schema_file);
   const nlohmann::json schema_json = nlohmann::json::parse(in);
   valijson::Schema schema;
   valijson::SchemaParser parser;

@@ -1,0 +1,134 @@
+// lobefit compare: several recipes on one measurement, side by side; the recommended one becomes NAME.material.json.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "comparison_text.h"
+#include "measurement_options.h"
+#include "recipe_options.h"
+#include "verb.h"
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+#include "lobefit/fit/compare.h"
+#include "lobefit/material/json.h"
+
+namespace lobefit {
+namespace {
+
+struct CompareVerb {
+  MeasurementOptions measurement;
+  RecipeOverrides overrides;
+  CompareOptions compare;
+  std::string file, out = ".", name, recipes;
+  std::vector<std::string> with;
+};
+
+// What is worth comparing on a measurement: from the simplest model to the richest that it can determine, and a second
+// lobe.
+std::vector<std::string> DefaultRecipes(const MeasurementTraits& traits) {
+  if (traits.isotropic) return {"ggx", "ggx-two-lobes"};
+  if (traits.in_plane) return {"ggx", "auto", "ggx-two-lobes"};
+  return {"ggx", "ggx-anisotropic", "ellipsoid", "ggx-two-lobes"};
+}
+
+Recipe NamedRecipe(const std::string& name, const MeasurementTraits& traits) {
+  if (name == "auto") return AutomaticRecipe(traits);
+  std::vector<std::string> names = RecipeNames();
+  const bool known = std::find(names.begin(), names.end(), name) != names.end();
+  const bool path = name.find('/') != std::string::npos || name.ends_with(".toml") || std::filesystem::exists(name);
+  if (!known && !path) {
+    names.insert(names.begin(), "auto");
+    throw UsageError(fmt::format("--recipes: '{}' is neither a recipe nor a file{}; allowed: {}, or a .toml file",
+                                 Excerpt(name), DidYouMean(name, names), Join(names)));
+  }
+  return LoadRecipe(name);
+}
+
+std::vector<Recipe> ChooseRecipes(const CompareVerb& verb, const Measurement& measurement) {
+  const MeasurementTraits traits = TraitsOf(measurement);
+  std::vector<std::string> names;
+  for (const std::string_view piece : Split(verb.recipes, ',')) {
+    const std::string name(Trim(piece));
+    if (name.empty() && !verb.recipes.empty()) throw UsageError("--recipes has an empty name; write a,b,c");
+    if (name.empty()) continue;
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      throw UsageError(fmt::format("--recipes names '{}' twice", Excerpt(name)));
+    names.push_back(name);
+  }
+  if (names.empty()) names = DefaultRecipes(traits);
+  std::vector<Recipe> recipes;
+  for (const std::string& name : names) {
+    Recipe recipe = NamedRecipe(name, traits);
+    recipe.plane_azimuth = traits.plane_azimuth;
+    verb.overrides.Apply(&recipe);
+    recipes.push_back(recipe);
+  }
+  return recipes;
+}
+
+int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
+  std::error_code error;
+  const std::filesystem::path folder = verb.out;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw OutputError(
+        fmt::format("{}: cannot be made: {}; choose another folder with --out", verb.out, error.message()));
+
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<GivenMaterial> given;
+  for (const std::string& path : verb.with) given.push_back({path, ReadMaterial(path)});
+  Measurement measurement = verb.measurement.Load(verb.file);
+  const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  CompareOptions options = verb.compare;
+  options.fit.threads = common.Threads();
+  Comparison comparison = Compare(ChooseRecipes(verb, measurement), given, options, &measurement);
+
+  Material& material = comparison.models[comparison.recommended].material;
+  material.command = common.command;
+  material.timings_s["read"] = read_s;
+  material.recipe_reason = comparison.reason;
+  const std::string name = verb.name.empty() ? std::filesystem::path(verb.file).stem().string() : verb.name;
+  const std::filesystem::path document = folder / (name + ".material.json");
+  WriteMaterial(material, document);
+  const ComparisonContext context = {measurement.source, measurement.sha256, measurement.format, common.command,
+                                     document.string()};
+  if (common.json) {
+    fmt::print("{}", ComparisonJson(comparison, context));
+  } else {
+    fmt::print("{}Result:  {}\n", ComparisonText(comparison, context), document.string());
+  }
+  if (material.termination.converged && material.termination.determined) return kExitDone;
+  std::fputs("lobefit: no recipe converged and is determined by the measurement; try a simpler one in --recipes\n",
+             stderr);
+  return kExitFit;
+}
+
+}  // namespace
+
+std::function<int()> SetUpCompare(CLI::App* app, CommonOptions* common) {
+  auto verb = std::make_shared<CompareVerb>();
+  const std::string group = "What to compare";
+  app->add_option("FILE", verb->file, "measurement file")->required();
+  app->add_option("--recipes", verb->recipes,
+                  "recipes by name or .toml file, with commas between (default: what suits the measurement)")
+      ->group(group);
+  app->add_option("--with", verb->with, "a *.material.json to compare with, as it is; may be given again")
+      ->group(group);
+  verb->overrides.AddTo(app, group);
+  app->add_option("--folds", verb->compare.folds,
+                  "folds over the incident directions for the held-out error (default 5; 0: none)")
+      ->check(CLI::Range(0, 1000));
+  app->add_option("--out", verb->out, "folder of the results (default: the current one)");
+  app->add_option("--name", verb->name, "NAME of the results (default: the file's name without its ending)");
+  app->add_option("--starts", verb->compare.fit.starts, "descents from the best-ranked starts (default 8)")
+      ->check(CLI::Range(1, 100000));
+  app->add_option("--seed", verb->compare.fit.seed, "seed of the folds and subsamples (default 1)");
+  verb->measurement.AddTo(app);
+  return [=] { return RunCompare(*verb, *common); };
+}
+
+}  // namespace lobefit

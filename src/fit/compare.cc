@@ -1,0 +1,312 @@
+#include "lobefit/fit/compare.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/progress.h"
+#include "lobefit/base/text.h"
+#include "lobefit/fit/layout.h"
+#include "lobefit/fit/prediction.h"
+#include "lobefit/fit/problem.h"
+#include "lobefit/fit/starts.h"
+#include "lobefit/measurement/incidence.h"
+
+namespace lobefit {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+// Excess in mean square that is not worth a parameter: 1 % in root mean square.
+constexpr double kWorthNothing = 0.02;
+// Errors below this share of the measured values' own root mean square are rounding, and equal.
+constexpr double kRounding = 1e-6;
+
+double Seconds(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Measurement Part(const Measurement& measurement, const std::vector<std::size_t>& indices) {
+  Measurement part;
+  part.channels = measurement.channels;
+  part.isotropic = measurement.isotropic;
+  part.format = measurement.format;
+  part.source = measurement.source;
+  part.samples = measurement.samples.Subset(indices);
+  return part;
+}
+
+// Root mean square of the measured values under the metric: the error of a model that is black everywhere.
+double ErrorOfBlack(const Comparison& comparison, const Samples& samples) {
+  if (comparison.metric == Metric::kRelative) return 1;
+  const std::vector<std::vector<double>> black(samples.values.size(), std::vector<double>(samples.size()));
+  return std::sqrt(SumSquares(comparison.metric, comparison.weighting, true, samples, black).MeanSquare());
+}
+
+// Fits and held-out parts of one fold.
+struct Fold {
+  Measurement training, test;
+};
+
+std::vector<Fold> MakeFolds(const Measurement& measurement, const CompareOptions& options, Comparison* comparison) {
+  const Incidences incidences = GroupByIncidence(measurement);
+  comparison->incidences = incidences.wi.size();
+  comparison->folds = std::min(options.folds, incidences.wi.size());
+  if (comparison->folds < 2) {
+    comparison->folds = 0;
+    comparison->remarks.push_back(
+        incidences.wi.size() < 2
+            ? "the measurement has one incident direction, so none can be held out: there is no held-out error"
+            : "no folds were asked for: there is no held-out error");
+    return {};
+  }
+  const std::vector<std::size_t> dealt = DealFolds(incidences.wi.size(), comparison->folds, options.fit.seed);
+  const std::vector<std::size_t> chosen =
+      StratifiedSubsample(measurement.samples.size(), options.fold_samples, options.fit.seed);
+  comparison->held_out_samples = chosen.size();
+  if (measurement.isotropic)
+    comparison->remarks.emplace_back("the table is isotropic: its incident directions are bins of one degree");
+  std::vector<Fold> folds(comparison->folds);
+  for (std::size_t k = 0; k < folds.size(); ++k) {
+    std::vector<std::size_t> training, test;
+    for (const std::size_t i : chosen) (dealt[incidences.group[i]] == k ? test : training).push_back(i);
+    folds[k] = {Part(measurement, training), Part(measurement, test)};
+  }
+  return folds;
+}
+
+void FitAll(const Recipe& recipe, const CompareOptions& options, Measurement* measurement, Recipe* used,
+            ComparedModel* model) {
+  const auto start = std::chrono::steady_clock::now();
+  *used = recipe;
+  model->material = Fit(recipe, options.fit, measurement);
+  // A reason says that the recipe was chosen automatically.
+  if (!recipe.reason.empty()) {
+    if (const std::optional<Recipe> alternative = AutomaticAlternative(recipe, model->material)) {
+      *used = *alternative;
+      model->material = Fit(*used, options.fit, measurement);
+    }
+  }
+  model->fit_s = Seconds(start);
+  model->name = used->name;
+  model->free_parameters = Layout(*used, measurement->channels.names).size();
+}
+
+// Errors on all samples, and the information criteria of fitted models.
+void Judge(const Comparison& comparison, const Measurement& measurement, double black, ThreadPool* pool,
+           ComparedModel* model) {
+  const Samples& samples = measurement.samples;
+  const std::vector<std::vector<double>> f_r = Predict(model->material, samples, pool);
+  model->errors = ErrorsUnderAllMetrics(comparison.weighting, samples, f_r);
+  const double mean_square = SumSquares(comparison.metric, comparison.weighting, true, samples, f_r).MeanSquare();
+  const double floor = 1e-12 * black;
+  const double n = static_cast<double>(comparison.residuals), k = static_cast<double>(model->free_parameters) + 1;
+  const double deviance = n * std::log(std::max(mean_square, floor * floor));
+  model->aic = deviance + 2 * k;
+  model->bic = deviance + k * std::log(n);
+}
+
+// One model on one fold: NaN and a remark where the rest cannot be fitted.
+struct FoldResult {
+  SquareSum sum;
+  double seconds = 0;
+  std::string remark;
+};
+
+FoldResult RunFold(const Comparison& comparison, const Fold& fold, const Recipe* recipe, const FitOptions& options,
+                   const Material& given) {
+  FoldResult result;
+  const auto start = std::chrono::steady_clock::now();
+  ThreadPool alone(1);
+  try {
+    Measurement training = fold.training;
+    const Material material = recipe == nullptr ? given : Fit(*recipe, options, &training);
+    result.sum = SumSquares(comparison.metric, comparison.weighting, true, fold.test.samples,
+                            Predict(material, fold.test.samples, &alone));
+  } catch (const InputError& error) {
+    result.remark = error.what();
+  }
+  result.seconds = Seconds(start);
+  return result;
+}
+
+// Index of the eligible model with the least `value`.
+template <class Value>
+std::size_t Least(const std::vector<std::size_t>& eligible, const Value& value) {
+  return *std::min_element(eligible.begin(), eligible.end(),
+                           [&](std::size_t a, std::size_t b) { return value(a) < value(b); });
+}
+
+std::vector<std::size_t> Eligible(const Comparison& comparison) {
+  std::vector<std::size_t> sound, any;
+  for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+    const ComparedModel& model = comparison.models[m];
+    if (!model.fitted) continue;
+    any.push_back(m);
+    const bool judged = comparison.folds == 0 || std::isfinite(model.held_out);
+    if (model.material.termination.converged && model.material.termination.determined && judged) sound.push_back(m);
+  }
+  return sound.empty() ? any : sound;
+}
+
+double MeanOverFolds(const ComparedModel& model) {
+  return std::accumulate(model.fold_mean_square.begin(), model.fold_mean_square.end(), 0.0) /
+         static_cast<double>(model.fold_mean_square.size());
+}
+
+void RecommendByBic(const std::vector<std::size_t>& eligible, Comparison* comparison) {
+  comparison->recommended = Least(eligible, [&](std::size_t m) { return comparison->models[m].bic; });
+  comparison->reason = fmt::format(
+      "{} has the least BIC; without held-out directions that is all there is to go by, and it takes neighbouring "
+      "samples for independent",
+      comparison->models[comparison->recommended].name);
+}
+
+// Mean and standard error over folds of the difference to the best model.
+void SetExcess(const ComparedModel& best, ComparedModel* model) {
+  const std::size_t folds = best.fold_mean_square.size();
+  const auto n = static_cast<double>(folds);
+  model->excess = MeanOverFolds(*model) - MeanOverFolds(best);
+  double square = 0;
+  for (std::size_t k = 0; k < folds; ++k) {
+    const double d = model->fold_mean_square[k] - best.fold_mean_square[k] - model->excess;
+    square += d * d;
+  }
+  model->excess_error = std::sqrt(square / (n - 1) / n);
+}
+
+void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Comparison* comparison) {
+  std::vector<ComparedModel>& models = comparison->models;
+  const std::size_t best = Least(eligible, [&](std::size_t m) { return MeanOverFolds(models[m]); });
+  for (ComparedModel& model : models) SetExcess(models[best], &model);
+  const double least = MeanOverFolds(models[best]);
+  const auto tolerance = [&](const ComparedModel& model) {
+    return std::max({model.excess_error, kWorthNothing * least, kRounding * kRounding * black * black});
+  };
+  std::size_t chosen = best;
+  for (const std::size_t m : eligible) {
+    const bool simpler = models[m].free_parameters < models[chosen].free_parameters;
+    if (simpler && models[m].excess <= tolerance(models[m])) chosen = m;
+  }
+  comparison->recommended = chosen;
+  const ComparedModel& model = models[chosen];
+  if (chosen != best) {
+    comparison->reason = fmt::format(
+        "{} predicts held-out incident directions with an error of {:.3g}; the least is {:.3g}, of {} with {} free "
+        "parameters instead of {}, and that is no better than chance or one per cent",
+        model.name, model.held_out, models[best].held_out, models[best].name, models[best].free_parameters,
+        model.free_parameters);
+    return;
+  }
+  std::size_t fitted = 0;
+  for (const ComparedModel& any : models) fitted += any.fitted ? 1 : 0;
+  comparison->reason =
+      fmt::format("{} has the least error on held-out incident directions, {:.3g}{}", model.name, model.held_out,
+                  eligible.size() < fitted ? ", of those that converged and are determined" : "");
+  std::vector<std::size_t> simpler;
+  for (const std::size_t m : eligible) {
+    if (models[m].free_parameters < model.free_parameters) simpler.push_back(m);
+  }
+  if (simpler.empty()) return;
+  const ComparedModel& next = models[Least(simpler, [&](std::size_t m) { return MeanOverFolds(models[m]); })];
+  comparison->reason +=
+      fmt::format(", and no simpler recipe comes within one standard error of it (the nearest, {}: {:.3g})", next.name,
+                  next.held_out);
+}
+
+}  // namespace
+
+std::vector<std::size_t> DealFolds(std::size_t incidences, std::size_t folds, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<std::size_t> dealt(incidences), hand(folds);
+  for (std::size_t i = 0; i < incidences; ++i) {
+    if (i % folds == 0) {
+      std::iota(hand.begin(), hand.end(), std::size_t{0});
+      for (std::size_t k = folds; k > 1; --k) std::swap(hand[k - 1], hand[random() % k]);
+    }
+    dealt[i] = hand[i % folds];
+  }
+  return dealt;
+}
+
+Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMaterial>& given,
+                   const CompareOptions& options, Measurement* measurement) {
+  Comparison comparison;
+  comparison.metric = recipes.at(0).metric;
+  comparison.weighting = recipes[0].weighting;
+  comparison.samples_read = measurement->samples.size() + measurement->set_aside.total();
+  comparison.theta_max = kPi;
+  for (const Recipe& recipe : recipes) {
+    SetAsideForRecipe(recipe, measurement);
+    comparison.theta_max = std::min(comparison.theta_max, recipe.theta_max);
+  }
+  const Samples& samples = measurement->samples;
+  comparison.samples = samples.size();
+  comparison.residuals = samples.size() * samples.values.size();
+  const std::vector<Fold> folds = MakeFolds(*measurement, options, &comparison);
+  const double black = ErrorOfBlack(comparison, samples);
+  ThreadPool pool(std::max(1, options.fit.threads));
+  Progress progress("comparing", (recipes.size() + given.size()) * (1 + folds.size()));
+
+  std::vector<Recipe> used(recipes.size());
+  comparison.models.resize(recipes.size() + given.size());
+  for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+    ComparedModel& model = comparison.models[m];
+    if (m < recipes.size()) {
+      FitAll(recipes[m], options, measurement, &used[m], &model);
+    } else {
+      const GivenMaterial& material = given[m - recipes.size()];
+      if (material.material.channels.size() != samples.values.size()) {
+        throw InputError(
+            fmt::format("{}: has {} channels ({}), the measurement {} ({}); choose channels of the "
+                        "measurement with --channels",
+                        material.name, material.material.channels.size(), Join(material.material.channels),
+                        samples.values.size(), Join(measurement->channels.names)));
+      }
+      model.name = material.name;
+      model.fitted = false;
+      model.material = material.material;
+      if (!model.material.source.sha256.empty() && model.material.source.sha256 == measurement->sha256)
+        model.remarks.emplace_back("was fitted to this measurement, so nothing was held out of it");
+    }
+    Judge(comparison, *measurement, black, &pool, &model);
+    progress.Advance();
+  }
+
+  std::vector<FoldResult> results(comparison.models.size() * folds.size());
+  FitOptions alone = options.fit;
+  alone.threads = 1;
+  pool.Run(results.size(), [&](std::size_t task) {
+    const std::size_t m = task / folds.size();
+    results[task] = RunFold(comparison, folds[task % folds.size()], m < recipes.size() ? &used[m] : nullptr, alone,
+                            comparison.models[m].material);
+    progress.Advance();
+  });
+  for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+    ComparedModel& model = comparison.models[m];
+    SquareSum total;
+    for (std::size_t k = 0; k < folds.size(); ++k) {
+      const FoldResult& result = results[m * folds.size() + k];
+      model.fold_mean_square.push_back(result.sum.MeanSquare());
+      total.square += result.sum.square;
+      total.weight += result.remark.empty() ? result.sum.weight : kNan;
+      model.folds_s += result.seconds;
+      if (!result.remark.empty()) model.remarks.push_back(fmt::format("fold {}: {}", k + 1, result.remark));
+    }
+    model.held_out = std::sqrt(total.MeanSquare());
+  }
+  const std::vector<std::size_t> eligible = Eligible(comparison);
+  if (folds.empty()) {
+    RecommendByBic(eligible, &comparison);
+  } else {
+    RecommendByFolds(eligible, black, &comparison);
+  }
+  return comparison;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,36 @@
+// What a material says of the samples of a measurement, and how far off it is: for materials of every kind, fitted here
+// or not.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lobefit/base/parallel.h"
+#include "lobefit/material/material.h"
+#include "lobefit/measurement/measurement.h"
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+
+// f_r[channel][sample], 1/sr. The result does not depend on the number of threads.
+std::vector<std::vector<double>> Predict(const Material& material, const Samples& samples, ThreadPool* pool);
+
+// Sums over samples and channels; samples that a metric has no number for (relative: measured f_r <= 0) do not count.
+struct SquareSum {
+  double square = 0;  // of weight times squared residual
+  double weight = 0;
+  std::size_t residuals = 0;
+
+  double MeanSquare() const { return square / weight; }  // NaN where nothing was counted
+};
+
+// Squared residuals of a prediction under a metric, with the weights of a fit: the samples' own (where
+// `own_weights`), their solid angles, and those that belong to the metric (sines of ngan and low-log).
+SquareSum SumSquares(Metric metric, Weighting weighting, bool own_weights, const Samples& samples,
+                     const std::vector<std::vector<double>>& f_r);
+
+// Root mean square under every metric, as in Material::errors (without the samples' own weights).
+std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples,
+                                               const std::vector<std::vector<double>>& f_r);
+
+}  // namespace lobefit
