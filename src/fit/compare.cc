@@ -83,7 +83,7 @@ std::vector<Fold> MakeFolds(const Measurement& measurement, const CompareOptions
 void FitAll(const Recipe& recipe, const CompareOptions& options, Measurement* measurement, Recipe* used,
             ComparedModel* model) {
   const auto start = std::chrono::steady_clock::now();
-  *used = recipe;
+  *used = WithMetals(recipe, measurement->channels.wavelengths_nm, measurement->channels.size());
   model->material = Fit(recipe, options.fit, measurement);
   // A reason says that the recipe was chosen automatically.
   if (!recipe.reason.empty()) {
