@@ -13,8 +13,7 @@
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/layout.h"
 #include "lobefit/fit/problem.h"
-#include "lobefit/fit/solve.h"
-#include "lobefit/fit/starts.h"
+#include "lobefit/fit/search.h"
 #include "lobefit/fit/uncertainty.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
@@ -23,46 +22,6 @@ namespace lobefit {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-struct DistinctMinimum {
-  Solution solution;
-  std::size_t starts = 1;
-};
-
-// Two descents ended in the same minimum where their costs agree to a relative 1e-5 (the subsample's descents end at
-// 1e-12), or where both are nothing but rounding: residuals of 1e-12 on average.
-bool SameCost(double a, double b, std::size_t residuals) {
-  return std::fabs(a - b) <= 1e-5 * std::max(a, b) + 1e-24 * static_cast<double>(residuals);
-}
-
-// Distinct minima, best first.
-std::vector<DistinctMinimum> Distinct(std::vector<Solution> solutions, std::size_t residuals) {
-  std::erase_if(solutions, [](const Solution& s) { return !std::isfinite(s.cost); });
-  std::stable_sort(solutions.begin(), solutions.end(),
-                   [](const Solution& a, const Solution& b) { return a.cost < b.cost; });
-  std::vector<DistinctMinimum> minima;
-  for (const Solution& solution : solutions) {
-    if (!minima.empty() && SameCost(minima.back().solution.cost, solution.cost, residuals)) {
-      ++minima.back().starts;
-    } else {
-      minima.push_back({solution, 1});
-    }
-  }
-  return minima;
-}
-
-// Descends from the best starts on `samples`.
-std::vector<DistinctMinimum> Search(const Problem& problem, const Layout& layout, const Samples& samples,
-                                    const FitOptions& options, ThreadPool* pool) {
-  std::vector<Start> starts = RankedStarts(problem, layout, samples, pool);
-  if (starts.size() > options.starts) starts.resize(options.starts);
-  std::vector<Solution> solutions(starts.size());
-  pool->Run(starts.size(), [&](std::size_t k) {
-    ThreadPool alone(1);
-    solutions[k] = Solve(problem, layout, starts[k].u, {}, &alone);
-  });
-  return Distinct(std::move(solutions), problem.size() * problem.channels());
-}
 
 // Weight of a sample under a metric beyond the recipe's weighting.
 double MetricWeight(Metric metric, const Samples& samples, std::size_t i) {
@@ -299,35 +258,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   ThreadPool pool(std::max(1, options.threads));
   const Problem problem(samples, recipe);
 
-  std::vector<DistinctMinimum> minima;
-  if (samples.size() <= 3 * options.subsample) {
-    minima = Search(problem, layout, samples, options, &pool);
-  } else {
-    const Samples subsample = samples.Subset(StratifiedSubsample(samples.size(), options.subsample, options.seed));
-    minima = Search(Problem(subsample, recipe), layout, subsample, options, &pool);
-    // Minima that are clearly worse on the subsample are not finished; their cost is scaled to all samples.
-    const double scale = static_cast<double>(samples.size()) / static_cast<double>(subsample.size());
-    std::size_t finished = 0;
-    SolveOptions finish;
-    finish.function_tolerance = 1e-10;
-    for (DistinctMinimum& minimum : minima) {
-      if (finished < 2 && minimum.solution.cost < 1.2 * minima[0].solution.cost) {
-        const int before = minimum.solution.iterations;
-        minimum.solution = Solve(problem, layout, minimum.solution.u, finish, &pool);
-        minimum.solution.iterations += before;
-        ++finished;
-      } else {
-        minimum.solution.cost *= scale;
-      }
-    }
-    if (minima.size() >= 2 && finished == 2 && minima[1].solution.cost < minima[0].solution.cost)
-      std::swap(minima[0], minima[1]);
-    if (minima.size() >= 2 && finished == 2 &&
-        SameCost(minima[0].solution.cost, minima[1].solution.cost, problem.size() * problem.channels())) {
-      minima[0].starts += minima[1].starts;
-      minima.erase(minima.begin() + 1);
-    }
-  }
+  const std::vector<DistinctMinimum> minima = FindMinima(problem, layout, samples, options, &pool);
   if (minima.empty())
     throw InputError(measurement->source +
                      ": no start of the fit has a finite cost; look at the values with `lobefit info`");

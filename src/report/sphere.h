@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "lobefit/core/off_center.h"
 #include "lobefit/report/color.h"
 #include "lobefit/report/report_data.h"
 
@@ -24,6 +25,12 @@ using BrdfFunction = std::function<bool(const Vec3& wi, const Vec3& wo, double* 
 
 LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, std::size_t channels, int size);
 LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int size);
+
+// Under an analytic sky with a low sun, 104 pixels wide. Light comes from `count` directions: half drawn from
+// the density of slopes of `lobe`, half by the cosine, weighted by the balance heuristic; the same ones for any brdf,
+// so that two spheres can be compared.
+LitSphere SkySphere(const BrdfFunction& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color,
+                    std::size_t channels, int count, int threads);
 
 // Factor before ToScreen: highlights may saturate, but not so far that the rest is black.
 double SphereExposure(const LitSphere& sphere);

@@ -69,55 +69,6 @@ Color Sky(const Vec3& w, bool grey) {
 // One point set for all pixels: the sky is smooth, and both spheres see the same directions.
 Vec2 Point2(int i, int count) { return {(i + 0.5) / (count / 2.0), std::fmod(0.5 + 0.6180339887498949 * i, 1.0)}; }
 
-// Light comes from directions drawn from the fitted lobe (facets by the density of slopes) and by the cosine, weighted
-// by the balance heuristic.
-Sphere UnderSky(const Brdf& brdf, const ReportData& data, const ChannelColor& to_color, int count) {
-  const SlopeFrame lobe(data.fitted.lobe_shapes()[0]);
-  const bool grey = data.channels() < 3;
-  const Vec3 view = {0, 0, 1};
-  const std::size_t pixels = PixelIndex(0, kSkySize, kSkySize);
-  Sphere sphere = {kSkySize, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
-  ParallelFor(kSkySize, data.threads, [&](std::size_t row) {
-    std::vector<double> f_r(data.channels());
-    for (int column = 0; column < kSkySize; ++column) {
-      Frame frame;
-      if (!SphereFrame(column, static_cast<int>(row), kSkySize, &frame)) continue;
-      const Vec3 wo = frame.ToLocal(view);
-      const std::size_t pixel = row * kSkySize + static_cast<std::size_t>(column);
-      Color sum = {0, 0, 0};
-      int unknown = 0, taken = 0;
-      for (int i = 0; i < count; ++i) {
-        const Vec2 u = Point2(i / 2, count);
-        const double phi = 2 * kPi * u.y;
-        Vec3 wi;
-        if (i % 2 == 0) {
-          const double rho = std::sqrt(u.x / (1 - u.x));
-          const double sx = lobe.slope_x + lobe.a * rho * std::cos(phi),
-                       sy = lobe.slope_y + lobe.b * rho * std::cos(phi) + lobe.c * rho * std::sin(phi);
-          wi = Reflect(wo, Normalized(Vec3{-sx, -sy, 1.0}));
-        } else {
-          const double r = std::sqrt(u.x);
-          wi = {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x)};
-        }
-        if (wi.z <= 0.001) continue;
-        const Vec3 h = HalfVector(wi, wo);
-        const double density =
-            (SlopeD(lobe, h) * h.z / (4 * std::max(1e-9, Dot(wo, h))) + wi.z * kInvPi) * (count / 2.0);
-        ++taken;
-        if (!brdf(wi, wo, f_r.data())) {
-          ++unknown;
-          continue;
-        }
-        const Color f = to_color.Linear(f_r.data()), radiance = Sky(frame.ToWorld(wi), grey);
-        for (std::size_t k = 0; k < 3; ++k) sum[k] += f[k] * radiance[k] * wi.z / density;
-      }
-      sphere.color[pixel] = sum;
-      sphere.known[pixel] = 4 * unknown <= taken ? 1 : 0;
-    }
-  });
-  return sphere;
-}
-
 struct Spheres {
   std::array<Sphere, 4> sphere;  // measured and fitted under the light, under the sky
   std::array<double, 2> exposure;
@@ -189,6 +140,54 @@ LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, st
   return sphere;
 }
 
+LitSphere SkySphere(const BrdfFunction& brdf, const SlopeCoordinates& coordinates, const ChannelColor& to_color,
+                    std::size_t channels, int count, int threads) {
+  const SlopeFrame lobe(coordinates);
+  const bool grey = channels < 3;
+  const Vec3 view = {0, 0, 1};
+  const std::size_t pixels = PixelIndex(0, kSkySize, kSkySize);
+  LitSphere sphere = {kSkySize, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
+  ParallelFor(kSkySize, threads, [&](std::size_t row) {
+    std::vector<double> f_r(channels);
+    for (int column = 0; column < kSkySize; ++column) {
+      Frame frame;
+      if (!SphereFrame(column, static_cast<int>(row), kSkySize, &frame)) continue;
+      const Vec3 wo = frame.ToLocal(view);
+      const std::size_t pixel = row * kSkySize + static_cast<std::size_t>(column);
+      Color sum = {0, 0, 0};
+      int unknown = 0, taken = 0;
+      for (int i = 0; i < count; ++i) {
+        const Vec2 u = Point2(i / 2, count);
+        const double phi = 2 * kPi * u.y;
+        Vec3 wi;
+        if (i % 2 == 0) {
+          const double rho = std::sqrt(u.x / (1 - u.x));
+          const double sx = lobe.slope_x + lobe.a * rho * std::cos(phi),
+                       sy = lobe.slope_y + lobe.b * rho * std::cos(phi) + lobe.c * rho * std::sin(phi);
+          wi = Reflect(wo, Normalized(Vec3{-sx, -sy, 1.0}));
+        } else {
+          const double r = std::sqrt(u.x);
+          wi = {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x)};
+        }
+        if (wi.z <= 0.001) continue;
+        const Vec3 h = HalfVector(wi, wo);
+        const double density =
+            (SlopeD(lobe, h) * h.z / (4 * std::max(1e-9, Dot(wo, h))) + wi.z * kInvPi) * (count / 2.0);
+        ++taken;
+        if (!brdf(wi, wo, f_r.data())) {
+          ++unknown;
+          continue;
+        }
+        const Color f = to_color.Linear(f_r.data()), radiance = Sky(frame.ToWorld(wi), grey);
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += f[k] * radiance[k] * wi.z / density;
+      }
+      sphere.color[pixel] = sum;
+      sphere.known[pixel] = 4 * unknown <= taken ? 1 : 0;
+    }
+  });
+  return sphere;
+}
+
 LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int size) {
   const BrdfFunction fitted = [&data](const Vec3& wi, const Vec3& wo, double* f_r) {
     data.fitted.Evaluate(wi, wo, f_r);
@@ -217,6 +216,7 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     data.fitted.Evaluate(wi, wo, f_r);
     return true;
   };
+  const SlopeCoordinates& lobe = data.fitted.lobe_shapes()[0];
   const auto spheres = std::make_shared<Spheres>();
   if (data.measurement.isotropic) {
     const IsotropicLookup lookup(data.measurement);
@@ -225,10 +225,12 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     const auto known =
         static_cast<double>(std::count(spheres->sphere[0].known.begin(), spheres->sphere[0].known.end(), 1));
     spheres->measured = known >= kLeastCover * static_cast<double>(spheres->sphere[0].known.size());
-    if (spheres->measured) spheres->sphere[2] = UnderSky(measured, data, to_color, kSkySamples);
+    if (spheres->measured)
+      spheres->sphere[2] = SkySphere(measured, lobe, to_color, data.channels(), kSkySamples, data.threads);
   }
   spheres->sphere[1] = LightFitted(data, to_color, kLightSize);
-  spheres->sphere[3] = UnderSky(fitted, data, to_color, spheres->measured ? kSkySamples : kSkySamplesOfAModel);
+  spheres->sphere[3] = SkySphere(fitted, lobe, to_color, data.channels(),
+                                 spheres->measured ? kSkySamples : kSkySamplesOfAModel, data.threads);
   // One exposure for a pair: the measured sphere sets it.
   const std::size_t first = spheres->measured ? 0 : 1;
   spheres->exposure = {SphereExposure(spheres->sphere[first]), SphereExposure(spheres->sphere[first + 2])};

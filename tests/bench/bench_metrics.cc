@@ -1,0 +1,158 @@
+// Which metric and weighting give fits that look right: fits each MERL table with every metric and weighting, renders
+// spheres of fit and table under a point light and under a sky, and prints one table in Markdown.
+//   bench_metrics NDF LOBES FILE.binary...
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/parallel.h"
+#include "lobefit/fit/fit.h"
+#include "lobefit/io/read.h"
+#include "lobefit/report/isotropic_lookup.h"
+#include "lobefit/report/sphere.h"
+
+namespace lobefit {
+namespace {
+
+constexpr int kLightSize = 160, kSkySamples = 256;
+
+struct Look {
+  LitSphere light, sky;
+};
+
+struct Errors {
+  double psnr_light = 0, psnr_sky = 0, color_light = 0, color_sky = 0, seconds = 0;
+  int unreliable = 0;
+};
+
+// CIE L*a*b* of linear sRGB, D65.
+std::array<double, 3> Lab(const std::array<double, 3>& rgb) {
+  const std::array<double, 3> xyz = {
+      (0.4124 * rgb[0] + 0.3576 * rgb[1] + 0.1805 * rgb[2]) / 0.9505,
+      0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2],
+      (0.0193 * rgb[0] + 0.1192 * rgb[1] + 0.9505 * rgb[2]) / 1.089,
+  };
+  const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
+  return {116 * f(xyz[1]) - 16, 500 * (f(xyz[0]) - f(xyz[1])), 200 * (f(xyz[1]) - f(xyz[2]))};
+}
+
+// Peak signal-to-noise ratio of the linear, exposed pictures clipped at white, and the mean CIE 1976 colour difference;
+// seen from up to 75 degrees: further out the tables are known to be too dark, and the fits leave samples beyond 80
+// degrees out.
+std::pair<double, double> Compare(const LitSphere& table, const LitSphere& fit) {
+  const double exposure = SphereExposure(table);
+  double square = 0, difference = 0;
+  std::size_t pixels = 0;
+  for (std::size_t i = 0; i < table.color.size(); ++i) {
+    const double x = (static_cast<double>(i % static_cast<std::size_t>(table.size)) + 0.5) / table.size * 2 - 1,
+                 y = 1 - (static_cast<double>(i / static_cast<std::size_t>(table.size)) + 0.5) / table.size * 2;
+    if (std::hypot(x, y) > 0.966) continue;
+    const bool lit = table.color[i][0] + table.color[i][1] + table.color[i][2] > 0;
+    if (!lit || table.known[i] == 0) continue;
+    std::array<double, 3> a, b;
+    for (std::size_t k = 0; k < 3; ++k) {
+      a[k] = std::clamp(table.color[i][k] * exposure, 0.0, 1.0);
+      b[k] = std::clamp(fit.color[i][k] * exposure, 0.0, 1.0);
+      square += (a[k] - b[k]) * (a[k] - b[k]) / 3;
+    }
+    const std::array<double, 3> p = Lab(a), q = Lab(b);
+    difference += std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+    ++pixels;
+  }
+  const auto n = static_cast<double>(pixels);
+  return {10 * std::log10(n / std::max(square, 1e-12)), difference / n};
+}
+
+Look Render(const BrdfFunction& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color) {
+  return {LightSphere(brdf, to_color, 3, kLightSize),
+          SkySphere(brdf, lobe, to_color, 3, kSkySamples, HardwareThreads())};
+}
+
+Recipe RecipeOf(Ndf ndf, std::size_t lobes, Metric metric, Weighting weighting) {
+  Recipe recipe = DefaultRecipe({std::vector<Lobe>(lobes, Lobe{ndf}), Diffuse::kLambert}, "study");
+  recipe.metric = metric;
+  recipe.weighting = weighting;
+  return recipe;
+}
+
+void Run(Ndf ndf, std::size_t lobes, const std::vector<std::string>& files) {
+  const std::size_t metrics = MetricChoices().size(), weightings = WeightingChoices().size();
+  std::vector<std::vector<Errors>> all(metrics * weightings);
+  for (const std::string& file : files) {
+    const Measurement table = ReadMeasurement(file, {});
+    const IsotropicLookup lookup(table);
+    const ChannelColor to_color(table.channels);
+    Look reference;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      Measurement measurement = table;
+      FitOptions options;
+      options.threads = HardwareThreads();
+      const auto start = std::chrono::steady_clock::now();
+      const Material material =
+          Fit(RecipeOf(ndf, lobes, MetricChoices()[k / weightings].value, WeightingChoices()[k % weightings].value),
+              options, &measurement);
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const Reflectance fitted(material.model, material.Values(), 3);
+      const SlopeCoordinates lobe = fitted.lobe_shapes()[0];
+      // The directions of the light are those of the first fit, so that all fits are compared on the same picture.
+      static SlopeCoordinates first;
+      if (k == 0) {
+        first = lobe;
+        reference =
+            Render([&](const Vec3& wi, const Vec3& wo, double* f) { return lookup.Find(wi, wo, f); }, first, to_color);
+      }
+      const Look look = Render(
+          [&](const Vec3& wi, const Vec3& wo, double* f) {
+            fitted.Evaluate(wi, wo, f);
+            return true;
+          },
+          first, to_color);
+      const auto [psnr_light, color_light] = Compare(reference.light, look.light);
+      const auto [psnr_sky, color_sky] = Compare(reference.sky, look.sky);
+      all[k].push_back({psnr_light, psnr_sky, color_light, color_sky, seconds,
+                        material.termination.converged && material.termination.determined ? 0 : 1});
+      std::fprintf(stderr, "%s %s %s: %.2f %.2f dB, %.2f %.2f dE, %.2f s\n", file.c_str(),
+                   MetricChoices()[k / weightings].name, WeightingChoices()[k % weightings].name, psnr_light, psnr_sky,
+                   color_light, color_sky, seconds);
+    }
+  }
+  fmt::print("| metric | weighting | light, dB | sky, dB | worst sky, dB | light, dE | sky, dE | seconds | exit 4 |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    Errors mean;
+    double worst = 1e9;
+    for (const Errors& e : all[k]) {
+      const double n = static_cast<double>(all[k].size());
+      mean.psnr_light += e.psnr_light / n;
+      mean.psnr_sky += e.psnr_sky / n;
+      mean.color_light += e.color_light / n;
+      mean.color_sky += e.color_sky / n;
+      mean.seconds += e.seconds / n;
+      mean.unreliable += e.unreliable;
+      worst = std::min(worst, e.psnr_sky);
+    }
+    fmt::print("| `{}` | {} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {} |\n",
+               MetricChoices()[k / weightings].name, WeightingChoices()[k % weightings].name, mean.psnr_light,
+               mean.psnr_sky, worst, mean.color_light, mean.color_sky, mean.seconds, mean.unreliable);
+  }
+}
+
+}  // namespace
+}  // namespace lobefit
+
+int main(int argc, char** argv) {
+  const lobefit::Choice<lobefit::Ndf>* ndf = argc > 3 ? lobefit::Find(lobefit::NdfChoices(), argv[1]) : nullptr;
+  const std::size_t lobes = argc > 3 ? std::strtoul(argv[2], nullptr, 10) : 0;
+  if (ndf == nullptr || lobes < 1 || lobes > 3) {
+    std::fprintf(stderr, "usage: bench_metrics NDF LOBES FILE.binary...\n");
+    return 2;
+  }
+  lobefit::Run(ndf->value, lobes, {argv + 3, argv + argc});
+  return 0;
+}
