@@ -102,7 +102,7 @@ void Judge(const Comparison& comparison, const Measurement& measurement, double 
            ComparedModel* model) {
   const Samples& samples = measurement.samples;
   const std::vector<std::vector<double>> f_r = Predict(model->material, samples, pool);
-  model->errors = ErrorsUnderAllMetrics(comparison.weighting, samples, f_r);
+  model->errors = ErrorsUnderAllMetrics(comparison.weighting, samples, f_r, pool);
   const double mean_square = SumSquares(comparison.metric, comparison.weighting, true, samples, f_r).MeanSquare();
   const double floor = 1e-12 * black;
   const double n = static_cast<double>(comparison.residuals), k = static_cast<double>(model->free_parameters) + 1;
@@ -238,7 +238,7 @@ Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMa
                    const CompareOptions& options, Measurement* measurement) {
   Comparison comparison;
   comparison.metric = recipes.at(0).metric;
-  comparison.weighting = recipes[0].weighting;
+  comparison.weighting = EffectiveWeighting(recipes[0].weighting, measurement->samples);
   comparison.samples_read = measurement->samples.size() + measurement->set_aside.total();
   comparison.theta_max = kPi;
   for (const Recipe& recipe : recipes) {

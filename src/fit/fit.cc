@@ -12,6 +12,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/layout.h"
+#include "lobefit/fit/prediction.h"
 #include "lobefit/fit/problem.h"
 #include "lobefit/fit/search.h"
 #include "lobefit/fit/uncertainty.h"
@@ -22,78 +23,6 @@ namespace lobefit {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-// Weight of a sample under a metric beyond the recipe's weighting.
-double MetricWeight(Metric metric, const Samples& samples, std::size_t i) {
-  if (metric != Metric::kNgan && metric != Metric::kLowLog) return 1;
-  const double sin_i = std::sqrt(std::max(0.0, 1 - samples.wi_z[i] * samples.wi_z[i]));
-  if (metric == Metric::kLowLog) return sin_i;
-  return sin_i * std::sqrt(std::max(0.0, 1 - samples.wo_z[i] * samples.wo_z[i]));
-}
-
-struct SquareSum {
-  double square = 0, weight = 0;
-};
-
-// Adds the squared residuals of samples [begin, begin + model.size()) in one channel under every metric; each transform
-// is applied once.
-void AddSquares(const Samples& samples, std::size_t channel, std::size_t begin, const std::vector<double>& f,
-                bool by_solid_angle, std::vector<SquareSum>* sums) {
-  const std::size_t count = f.size();
-  std::vector<double> model(count), target(count), residual(count);
-  const double* measured = samples.values[channel].data() + begin;
-  const double* cos_i = samples.wi_z.data() + begin;
-  for (const Transform transform :
-       {Transform::kLog1p, Transform::kCubeRoot, Transform::kLinear, Transform::kRelative}) {
-    TransformMeasured(transform, f.data(), cos_i, count, model.data());
-    TransformMeasured(transform, measured, cos_i, count, target.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      residual[i] = model[i] - target[i];
-      if (transform == Transform::kRelative) residual[i] = target[i] > 0 ? residual[i] / target[i] : kNan;
-    }
-    for (std::size_t m = 0; m < MetricChoices().size(); ++m) {
-      const Metric metric = MetricChoices()[m].value;
-      if (TransformOf(metric) != transform) continue;
-      SquareSum& sum = (*sums)[m];
-      for (std::size_t i = 0; i < count; ++i) {
-        if (!std::isfinite(residual[i])) continue;
-        const double w =
-            MetricWeight(metric, samples, begin + i) * (by_solid_angle ? samples.solid_angle[begin + i] : 1.0);
-        sum.square += w * residual[i] * residual[i];
-        sum.weight += w;
-      }
-    }
-  }
-}
-
-// Root mean square residual under each metric with the recipe's weighting, over all samples and channels that the
-// metric can take.
-std::vector<MetricError> ErrorsUnderAllMetrics(const Problem& problem, const Samples& samples, const Layout& layout,
-                                               const std::vector<double>& u, ThreadPool* pool) {
-  const KernelModel kernel = layout.ToKernel(u.data());
-  const bool by_solid_angle = layout.recipe().weighting == Weighting::kSolidAngle;
-  const std::size_t metrics = MetricChoices().size(), runs = RunCount(samples.size());
-  std::vector<std::vector<SquareSum>> sums(runs, std::vector<SquareSum>(metrics));
-  pool->Run(runs, [&](std::size_t run) {
-    std::vector<std::vector<double>> f;
-    constexpr std::size_t kPiece = 1024;
-    const std::size_t last = RunBegin(samples.size(), run + 1);
-    for (std::size_t begin = RunBegin(samples.size(), run); begin < last; begin += kPiece) {
-      ModelValues(problem.kernel_samples(), kernel, begin, std::min(last, begin + kPiece), &f);
-      for (std::size_t c = 0; c < f.size(); ++c) AddSquares(samples, c, begin, f[c], by_solid_angle, &sums[run]);
-    }
-  });
-  std::vector<MetricError> errors;
-  for (std::size_t m = 0; m < metrics; ++m) {
-    SquareSum total;
-    for (std::size_t run = 0; run < runs; ++run) {
-      total.square += sums[run][m].square;
-      total.weight += sums[run][m].weight;
-    }
-    errors.push_back({MetricChoices()[m].name, total.weight > 0 ? std::sqrt(total.square / total.weight) : kNan});
-  }
-  return errors;
-}
 
 // Flattened entry names of Layout::Report: "alpha_x", "f0[R]".
 std::vector<std::string> EntryNames(const std::vector<Parameter>& parameters,
@@ -279,7 +208,13 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
     if (measurement->set_aside[reason] > 0)
       material.set_aside[std::string(Key(reason))] = measurement->set_aside[reason];
   }
-  material.errors = ErrorsUnderAllMetrics(problem, samples, layout, best.u, &pool);
+  const KernelModel kernel = layout.ToKernel(best.u.data());
+  material.errors = ErrorsUnderAllMetrics(
+      recipe.weighting, samples,
+      [&](std::size_t begin, std::size_t end, std::vector<std::vector<double>>* f_r) {
+        ModelValues(problem.kernel_samples(), kernel, begin, end, f_r);
+      },
+      &pool);
   material.cost = best.cost;
   for (const DistinctMinimum& minimum : minima) material.minima.push_back(Describe(layout, minimum));
   material.termination = {best.converged, uncertainty.determined, best.message, best.iterations};

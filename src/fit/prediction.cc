@@ -20,6 +20,37 @@ double Weight(Metric metric, Weighting weighting, bool own_weights, const Sample
   return weight;
 }
 
+// Adds the squared residuals of samples [begin, begin + model.size()) in one channel under every metric; each transform
+// is applied once.
+void AddSquares(Weighting weighting, const Samples& samples, std::size_t channel, std::size_t begin,
+                const std::vector<double>& f_r, std::vector<SquareSum>* sums) {
+  const std::size_t count = f_r.size();
+  std::vector<double> model(count), target(count), residual(count);
+  const double* measured = samples.values[channel].data() + begin;
+  const double* cos_i = samples.wi_z.data() + begin;
+  for (const Transform transform :
+       {Transform::kLog1p, Transform::kCubeRoot, Transform::kLinear, Transform::kRelative}) {
+    TransformMeasured(transform, f_r.data(), cos_i, count, model.data());
+    TransformMeasured(transform, measured, cos_i, count, target.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      residual[i] = model[i] - target[i];
+      if (transform == Transform::kRelative) residual[i] = target[i] > 0 ? residual[i] / target[i] : std::nan("");
+    }
+    for (std::size_t m = 0; m < MetricChoices().size(); ++m) {
+      const Metric metric = MetricChoices()[m].value;
+      if (TransformOf(metric) != transform) continue;
+      SquareSum& sum = (*sums)[m];
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!std::isfinite(residual[i])) continue;
+        const double weight = Weight(metric, weighting, false, samples, begin + i);
+        sum.square += weight * residual[i] * residual[i];
+        sum.weight += weight;
+        ++sum.residuals;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> Predict(const Material& material, const Samples& samples, ThreadPool* pool) {
@@ -65,13 +96,40 @@ SquareSum SumSquares(Metric metric, Weighting weighting, bool own_weights, const
   return sum;
 }
 
-std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples,
-                                               const std::vector<std::vector<double>>& f_r) {
+std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples, const PredictPiece& predict,
+                                               ThreadPool* pool) {
+  const std::size_t metrics = MetricChoices().size(), runs = RunCount(samples.size());
+  std::vector<std::vector<SquareSum>> sums(runs, std::vector<SquareSum>(metrics));
+  pool->Run(runs, [&](std::size_t run) {
+    std::vector<std::vector<double>> f_r;
+    constexpr std::size_t kPiece = 1024;
+    const std::size_t last = RunBegin(samples.size(), run + 1);
+    for (std::size_t begin = RunBegin(samples.size(), run); begin < last; begin += kPiece) {
+      predict(begin, std::min(last, begin + kPiece), &f_r);
+      for (std::size_t c = 0; c < f_r.size(); ++c) AddSquares(weighting, samples, c, begin, f_r[c], &sums[run]);
+    }
+  });
   std::vector<MetricError> errors;
-  for (const Choice<Metric>& metric : MetricChoices()) {
-    errors.push_back({metric.name, std::sqrt(SumSquares(metric.value, weighting, false, samples, f_r).MeanSquare())});
+  for (std::size_t m = 0; m < metrics; ++m) {
+    SquareSum total;
+    for (std::size_t run = 0; run < runs; ++run) {
+      total.square += sums[run][m].square;
+      total.weight += sums[run][m].weight;
+    }
+    errors.push_back({MetricChoices()[m].name, std::sqrt(total.MeanSquare())});
   }
   return errors;
+}
+
+std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples,
+                                               const std::vector<std::vector<double>>& f_r, ThreadPool* pool) {
+  const PredictPiece slice = [&](std::size_t begin, std::size_t end, std::vector<std::vector<double>>* piece) {
+    piece->clear();
+    for (const std::vector<double>& channel : f_r)
+      piece->emplace_back(channel.begin() + static_cast<std::ptrdiff_t>(begin),
+                          channel.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  return ErrorsUnderAllMetrics(weighting, samples, slice, pool);
 }
 
 }  // namespace lobefit

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "lobefit/base/parallel.h"
@@ -29,8 +30,15 @@ struct SquareSum {
 SquareSum SumSquares(Metric metric, Weighting weighting, bool own_weights, const Samples& samples,
                      const std::vector<std::vector<double>>& f_r);
 
-// Root mean square under every metric, as in Material::errors (without the samples' own weights).
+// f_r[channel][sample - begin] of a model at the samples [begin, end); safe from several threads.
+using PredictPiece = std::function<void(std::size_t begin, std::size_t end, std::vector<std::vector<double>>* f_r)>;
+
+// Root mean square under every metric, as in Material::errors (without the samples' own weights), piece by piece: no
+// memory beside the samples, and no dependence on the number of threads.
+std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples, const PredictPiece& predict,
+                                               ThreadPool* pool);
+// The same for a prediction that is there already.
 std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples,
-                                               const std::vector<std::vector<double>>& f_r);
+                                               const std::vector<std::vector<double>>& f_r, ThreadPool* pool);
 
 }  // namespace lobefit

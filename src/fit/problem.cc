@@ -58,6 +58,11 @@ void SetAsideForRecipe(const Recipe& recipe, Measurement* measurement) {
   if (negative > 0) measurement->set_aside.Add(SetAsideReason::kNegative, negative);
 }
 
+Weighting EffectiveWeighting(Weighting weighting, const Samples& samples) {
+  if (weighting != Weighting::kAuto) return weighting;
+  return samples.solid_angle.empty() ? Weighting::kCells : Weighting::kSolidAngle;
+}
+
 void SetDirections(const Samples& samples, KernelSamples* kernel) {
   const std::vector<double>* arrays[] = {&samples.wi_x, &samples.wi_y, &samples.wi_z,
                                          &samples.wo_x, &samples.wo_y, &samples.wo_z};
@@ -74,7 +79,7 @@ Problem::Problem(const Samples& samples, const Recipe& recipe) {
   }
   for (const std::vector<double>& target : target_) kernel_.target.push_back(target.data());
 
-  const bool by_solid_angle = recipe.weighting == Weighting::kSolidAngle;
+  const bool by_solid_angle = EffectiveWeighting(recipe.weighting, samples) == Weighting::kSolidAngle;
   if (by_solid_angle && samples.solid_angle.empty()) {
     throw InputError(
         "weighting 'solid-angle': this format lists directions without cells, so their solid angles are not known; use "

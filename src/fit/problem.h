@@ -15,6 +15,9 @@ namespace lobefit {
 // number for (log: 1 + f cos_theta_i <= 0; relative: f <= 0). Throws InputError where none is left.
 void SetAsideForRecipe(const Recipe& recipe, Measurement* measurement);
 
+// kAuto turned into what it means for these samples.
+Weighting EffectiveWeighting(Weighting weighting, const Samples& samples);
+
 // Keeps references to `samples`, which must outlive it.
 class Problem {
  public:

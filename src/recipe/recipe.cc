@@ -23,6 +23,7 @@ const std::vector<Choice<Weighting>>& WeightingChoices() {
   static const std::vector<Choice<Weighting>> choices = {
       {Weighting::kCells, "cells", "every sample counts the same"},
       {Weighting::kSolidAngle, "solid-angle", "a sample counts by the solid angle of its cell"},
+      {Weighting::kAuto, "auto", "solid-angle where the format knows its cells, else cells"},
   };
   return choices;
 }

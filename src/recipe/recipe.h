@@ -22,7 +22,8 @@ enum class Metric {
   kLowLog,    // ln(1 + f cos_theta_i) - ln(1 + m cos_theta_i), weight sin_theta_i [Low 2012, as in common use]
 };
 
-enum class Weighting { kCells, kSolidAngle };
+// kAuto: solid angles where the format knows its cells, else cells.
+enum class Weighting { kCells, kSolidAngle, kAuto };
 
 // Applied to the squared residual of a sample over all its channels; `scale` is in units of the residual.
 enum class Loss { kNone, kHuber, kCauchy, kTukey };
@@ -46,8 +47,9 @@ struct Recipe {
   std::string reason;  // why it was chosen, where it was chosen automatically
   Model model;
   std::vector<ParameterRecipe> parameters;  // in the order of Parameters(model)
-  Metric metric = Metric::kLog;
-  Weighting weighting = Weighting::kCells;
+  // The defaults give the spheres that look most like the tables' (fits/README.md).
+  Metric metric = Metric::kCubeRoot;
+  Weighting weighting = Weighting::kAuto;
   Loss loss = Loss::kNone;
   double loss_scale = 0.1;
   double theta_max = 80 * 3.14159265358979323846 / 180;  // radians

@@ -121,6 +121,7 @@ TEST(Fit, SetsAsideAndCounts) {
   const std::size_t before = measurement.samples.size();
   measurement.samples.values[1][3] = -20;
   Recipe recipe = AutomaticRecipe(TraitsOf(measurement));
+  recipe.metric = Metric::kLog;  // which has no number for f cos_theta_i <= -1
   recipe.theta_max = DegreesToRadians(50);
   const Material material = Fit(recipe, {}, &measurement);
   EXPECT_GT(material.set_aside.at("beyond_angle_limit"), 0U);
