@@ -18,6 +18,7 @@
 #include "lobefit/fit/uncertainty.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
+#include "lobefit/measurement/isotropy.h"
 
 namespace lobefit {
 namespace {
@@ -173,10 +174,15 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   const auto start_time = std::chrono::steady_clock::now();
   if (const std::string why = WhyNotEvaluable(wanted.model); !why.empty())
     throw InputError("recipe '" + wanted.name + "': " + why);
-  const Recipe recipe = WithMetals(wanted, measurement->channels.wavelengths_nm, measurement->channels.names.size());
+  Recipe recipe = WithMetals(wanted, measurement->channels.wavelengths_nm, measurement->channels.names.size());
+  recipe.weighting = EffectiveWeighting(recipe.weighting, measurement->samples);
   const std::size_t read = measurement->samples.size() + measurement->set_aside.total();
   SetAsideForRecipe(recipe, measurement);
-  const Samples& samples = measurement->samples;
+  bool any_azimuth = true;
+  for (const Lobe& lobe : recipe.model.lobes) any_azimuth = any_azimuth && IsRound(lobe.ndf) && !IsTilted(lobe.ndf);
+  Samples spread;
+  if (measurement->isotropic && !any_azimuth) spread = SpreadOverAzimuths(measurement->samples);
+  const Samples& samples = spread.size() > 0 ? spread : measurement->samples;
   const Layout layout(recipe, measurement->channels.names);
   if (samples.size() * layout.channels() < layout.size()) {
     throw InputError(

@@ -21,9 +21,9 @@ double Weight(Metric metric, Weighting weighting, bool own_weights, const Sample
 }
 
 // Adds the squared residuals of samples [begin, begin + model.size()) in one channel under every metric; each transform
-// is applied once.
-void AddSquares(Weighting weighting, const Samples& samples, std::size_t channel, std::size_t begin,
-                const std::vector<double>& f_r, std::vector<SquareSum>* sums) {
+// is applied once. weights[metric][sample - begin].
+void AddSquares(const std::vector<std::vector<double>>& weights, const Samples& samples, std::size_t channel,
+                std::size_t begin, const std::vector<double>& f_r, std::vector<SquareSum>* sums) {
   const std::size_t count = f_r.size();
   std::vector<double> model(count), target(count), residual(count);
   const double* measured = samples.values[channel].data() + begin;
@@ -39,14 +39,19 @@ void AddSquares(Weighting weighting, const Samples& samples, std::size_t channel
     for (std::size_t m = 0; m < MetricChoices().size(); ++m) {
       const Metric metric = MetricChoices()[m].value;
       if (TransformOf(metric) != transform) continue;
-      SquareSum& sum = (*sums)[m];
+      const double* weight = weights[m].data();
+      SquareSum sum;
       for (std::size_t i = 0; i < count; ++i) {
-        if (!std::isfinite(residual[i])) continue;
-        const double weight = Weight(metric, weighting, false, samples, begin + i);
-        sum.square += weight * residual[i] * residual[i];
-        sum.weight += weight;
-        ++sum.residuals;
+        // What the metric has no number for: weight 0.
+        const bool counts = std::isfinite(residual[i]);
+        const double w = counts ? weight[i] : 0.0, r = counts ? residual[i] : 0.0;
+        sum.square += w * r * r;
+        sum.weight += w;
+        sum.residuals += counts ? 1 : 0;
       }
+      (*sums)[m].square += sum.square;
+      (*sums)[m].weight += sum.weight;
+      (*sums)[m].residuals += sum.residuals;
     }
   }
 }
@@ -101,12 +106,18 @@ std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Sample
   const std::size_t metrics = MetricChoices().size(), runs = RunCount(samples.size());
   std::vector<std::vector<SquareSum>> sums(runs, std::vector<SquareSum>(metrics));
   pool->Run(runs, [&](std::size_t run) {
-    std::vector<std::vector<double>> f_r;
+    std::vector<std::vector<double>> f_r, weights(metrics);
     constexpr std::size_t kPiece = 1024;
     const std::size_t last = RunBegin(samples.size(), run + 1);
     for (std::size_t begin = RunBegin(samples.size(), run); begin < last; begin += kPiece) {
-      predict(begin, std::min(last, begin + kPiece), &f_r);
-      for (std::size_t c = 0; c < f_r.size(); ++c) AddSquares(weighting, samples, c, begin, f_r[c], &sums[run]);
+      const std::size_t end = std::min(last, begin + kPiece);
+      predict(begin, end, &f_r);
+      for (std::size_t m = 0; m < metrics; ++m) {
+        weights[m].resize(end - begin);
+        for (std::size_t i = begin; i < end; ++i)
+          weights[m][i - begin] = Weight(MetricChoices()[m].value, weighting, false, samples, i);
+      }
+      for (std::size_t c = 0; c < f_r.size(); ++c) AddSquares(weights, samples, c, begin, f_r[c], &sums[run]);
     }
   });
   std::vector<MetricError> errors;

@@ -1,5 +1,5 @@
-// Whether a default fit finds the best minimum: its cost on each MERL table against the best of many random starts,
-// one and two lobes, in one table in Markdown.
+// Fits of each MERL table: the error under every metric, and whether the default fit finds the best minimum, its cost
+// against the best of many random starts, in one table in Markdown.
 //   bench_starts METRIC WEIGHTING LOBES RANDOM_STARTS FILE.binary...
 #include <algorithm>
 #include <chrono>
@@ -70,8 +70,12 @@ double BestOfRandom(const Recipe& recipe, const Measurement& measurement, int co
 void Run(const Recipe& recipe, int count, const std::vector<std::string>& files) {
   ThreadPool pool(HardwareThreads());
   int reached = 0;
-  fmt::print("| material | cost of the default fit | best of {} random starts | ratio | seconds | minima |\n", count);
-  fmt::print("|---|---|---|---|---|---|\n");
+  std::string metrics, rule;
+  for (const Choice<Metric>& metric : MetricChoices()) {
+    metrics += fmt::format(" `{}` |", metric.name);
+    rule += "---|";
+  }
+  fmt::print("| material |{} seconds | cost / best of {} random starts |\n|---|{}---|---|\n", metrics, count, rule);
   for (const std::string& file : files) {
     Measurement measurement = ReadMeasurement(file, {});
     FitOptions options;
@@ -81,8 +85,9 @@ void Run(const Recipe& recipe, int count, const std::vector<std::string>& files)
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const double best = BestOfRandom(recipe, measurement, count, &pool), ratio = material.cost / best;
     reached += ratio <= 1.001 ? 1 : 0;
-    fmt::print("| {} | {:.6g} | {:.6g} | {:.5f} | {:.2f} | {} |\n", std::filesystem::path(file).stem().string(),
-               material.cost, best, ratio, seconds, material.minima.size());
+    std::string errors;
+    for (const MetricError& error : material.errors) errors += fmt::format(" {:.3g} |", error.rms);
+    fmt::print("| {} |{} {:.2f} | {:.5f} |\n", std::filesystem::path(file).stem().string(), errors, seconds, ratio);
     std::fflush(stdout);
   }
   fmt::print("\n{} of {} within 0.1 %\n", reached, files.size());

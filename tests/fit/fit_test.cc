@@ -97,6 +97,30 @@ TEST(Fit, SaysThatTheAxesOfAnIsotropicMaterialHaveNoDirection) {
   EXPECT_TRUE(material.termination.determined);
 }
 
+TEST(Fit, AnEllipsoidOnAnIsotropicTableIsRound) {
+  // Every half vector in the xz plane, as in a MERL table: alone they say nothing of alpha_y.
+  const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.15, 0.15, 0, 0, 0);
+  GoniometerLayout layout = StandardLayout();
+  layout.azimuths = {0};
+  Measurement measurement = Synthetic(truth, layout, 0, 1);
+  Samples& samples = measurement.samples;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Vec3 h = HalfVector(samples.wi(i), samples.wo(i));
+    const double phi = std::atan2(h.y, h.x), c = std::cos(phi), s = std::sin(phi);
+    for (auto [x, y] : {std::pair{&samples.wi_x[i], &samples.wi_y[i]}, std::pair{&samples.wo_x[i], &samples.wo_y[i]}}) {
+      const double old_x = *x;
+      *x = c * old_x + s * *y;
+      *y = -s * old_x + c * *y;
+    }
+  }
+  measurement.isotropic = true;
+  const Material material = Fit(DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "ellipsoid"), {}, &measurement);
+  EXPECT_TRUE(material.termination.converged);
+  EXPECT_TRUE(material.termination.determined);
+  EXPECT_NEAR(material.parameters[0].values[0], 0.15, 1e-8);
+  EXPECT_NEAR(material.parameters[1].values[0], 0.15, 1e-8);
+}
+
 TEST(Fit, SaysWhatTheDataDoNotDetermine) {
   // One direction of the half vector only: alpha and f0 cannot be told apart.
   Samples samples;
