@@ -16,6 +16,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv_columns.h"
+#include "lobefit/io/exr_head.h"
 #include "lobefit/io/exr_map.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/options.h"
@@ -293,6 +294,7 @@ bool IsExr(std::string_view bytes) { return bytes.starts_with(std::string_view(k
 
 Measurement ReadExr(const InputFile& file, const ReadOptions& options) {
   LimitOpenExr();
+  CheckExrHead(file);
   try {
     MemoryStream stream(file.bytes);
     Imf::InputFile exr(stream, 0);

@@ -49,8 +49,8 @@ bool ExrMap::Directions(std::size_t column, std::size_t row, std::size_t width, 
       if (!OnHemisphere(projection, 2 * u - 1, 1 - 2 * down, wo, measure)) return false;
       break;
     case ExrAxes::kUtia:
-      *wi = UtiaDirection(row);
-      *wo = UtiaDirection(column);
+      *wi = kUtiaGrid.Direction(row);
+      *wo = kUtiaGrid.Direction(column);
       *measure = 1;
       break;
   }

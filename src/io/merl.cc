@@ -16,28 +16,22 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 12;
 
-struct Dims {
-  std::int32_t theta_h, theta_d, phi_d;
-
-  std::uint64_t cells() const {
-    return static_cast<std::uint64_t>(theta_h) * static_cast<std::uint64_t>(theta_d) *
-           static_cast<std::uint64_t>(phi_d);
-  }
-};
-
-Dims ReadDims(std::string_view bytes) {
-  Dims dims = {};
+MerlDims ReadDims(std::string_view bytes) {
+  MerlDims dims = {};
   std::memcpy(&dims, bytes.data(), kHeaderBytes);
   return dims;
 }
 
+// Below this number of cells a thread costs more than it does.
+constexpr std::uint64_t kFewCells = 1 << 16;
+
 // The database has 90 x 90 x 180 cells: phi_d in [0, 180) degrees, the other half by reciprocity. A non-reciprocal set
 // (LIRIS PQBA) has 360 cells over the full turn.
-bool AreKnown(const Dims& dims) {
+bool AreKnown(const MerlDims& dims) {
   return dims.theta_h == 90 && dims.theta_d == 90 && (dims.phi_d == 180 || dims.phi_d == 360);
 }
 
-std::string Text(const Dims& dims) {
+std::string Text(const MerlDims& dims) {
   return std::to_string(dims.theta_h) + " x " + std::to_string(dims.theta_d) + " x " + std::to_string(dims.phi_d);
 }
 
@@ -47,12 +41,12 @@ void CheckSize(const InputFile& file) {
     throw InputError(name + ": byte 0: a MERL file begins with three 4-byte dims, but the file has only " +
                      std::to_string(file.bytes.size()) + " bytes; fetch the file again");
   }
-  const Dims dims = ReadDims(file.bytes);
+  const MerlDims dims = ReadDims(file.bytes);
   if (!AreKnown(dims)) {
     throw InputError(name + ": byte 0: the dims are " + Text(dims) +
                      "; a MERL table has 90 x 90 x 180 (or 90 x 90 x 360 without reciprocity) cells");
   }
-  const std::uint64_t expected = MerlBytes(static_cast<std::size_t>(dims.phi_d));
+  const std::uint64_t expected = MerlBytes(dims);
   if (file.bytes.size() != expected) {
     throw InputError(name + ": byte " + std::to_string(std::min<std::uint64_t>(file.bytes.size(), expected)) + ": " +
                      (file.bytes.size() < expected ? "the file ends" : "the table ends") + ", but a table of " +
@@ -73,12 +67,13 @@ struct Axis {
 
 class MerlTable {
  public:
-  MerlTable(std::string_view bytes, CellPosition position) : dims_(ReadDims(bytes)), cells_(dims_.cells()) {
+  MerlTable(std::string_view bytes, const MerlDims& dims, bool whole_turn, CellPosition position)
+      : dims_(dims), cells_(dims.cells()) {
     data_ = bytes.data() + kHeaderBytes;
     const double shift = position == CellPosition::kCentre ? 0.5 : 0.0;
-    for (int i = 0; i < dims_.theta_h; ++i) theta_h_.Add(MerlThetaH(i + shift));
+    for (int i = 0; i < dims_.theta_h; ++i) theta_h_.Add(ThetaH(i + shift));
     for (int i = 0; i < dims_.theta_d; ++i) theta_d_.Add((i + shift) / dims_.theta_d * kPi / 2);
-    const double turn = dims_.phi_d == 360 ? 2 * kPi : kPi;
+    const double turn = whole_turn ? 2 * kPi : kPi;
     for (int i = 0; i < dims_.phi_d; ++i) phi_d_.Add((i + shift) / dims_.phi_d * turn);
     // On the lower edge theta_d = 0 all azimuths are one pair of directions.
     edge_ = position == CellPosition::kEdge;
@@ -128,12 +123,14 @@ class MerlTable {
   double CellMeasure(std::size_t row) const {
     const int h = static_cast<int>(row) / dims_.theta_d, d = static_cast<int>(row) % dims_.theta_d;
     const double theta_d = (d + 0.5) / dims_.theta_d * kPi / 2;
-    const double step_h = MerlThetaH(h + 1) - MerlThetaH(h);
-    return 4 * std::cos(theta_d) * std::sin(MerlThetaH(h + 0.5)) * std::sin(theta_d) * step_h;
+    const double step_h = ThetaH(h + 1) - ThetaH(h);
+    return 4 * std::cos(theta_d) * std::sin(ThetaH(h + 0.5)) * std::sin(theta_d) * step_h;
   }
 
  private:
   static constexpr double kHorizon = 1e-9;
+
+  double ThetaH(double index) const { return MerlThetaH(index * 90 / dims_.theta_h); }
 
   double Load(std::size_t cell, std::size_t channel) const {
     double stored = 0;
@@ -141,7 +138,7 @@ class MerlTable {
     return stored * kMerlScale[channel];
   }
 
-  Dims dims_;
+  MerlDims dims_;
   std::size_t cells_;
   const char* data_;
   bool edge_;
@@ -152,19 +149,24 @@ class MerlTable {
 
 bool IsMerl(std::string_view bytes) {
   if (bytes.size() < kHeaderBytes) return false;
-  const Dims dims = ReadDims(bytes);
+  const MerlDims dims = ReadDims(bytes);
   if (AreKnown(dims)) return true;
   // A file of a table's size with other dims, or dims like a table's with another size, is a damaged MERL file: the
   // reader says so.
-  return bytes.size() == MerlBytes(180) || (dims.theta_h == 90 && dims.theta_d == 90);
+  return bytes.size() == MerlBytes({90, 90, 180}) || (dims.theta_h == 90 && dims.theta_d == 90);
 }
 
 Measurement ReadMerl(const InputFile& file, const ReadOptions& options) {
   CheckSize(file);
-  const MerlTable table(file.bytes, options.merl_cell);
-  ThreadPool pool(HardwareThreads());
+  const MerlDims dims = ReadDims(file.bytes);
+  return ReadMerlTable(file.bytes, dims, dims.phi_d == 360, options.merl_cell);
+}
+
+Measurement ReadMerlTable(std::string_view bytes, const MerlDims& dims, bool whole_turn, CellPosition position) {
+  const MerlTable table(bytes, dims, whole_turn, position);
+  ThreadPool pool(dims.cells() < kFewCells ? 1 : HardwareThreads());
   const std::size_t rows = table.rows();
-  const std::size_t rows_a_piece = 90, pieces = rows / rows_a_piece;
+  const std::size_t rows_a_piece = static_cast<std::size_t>(dims.theta_d), pieces = rows / rows_a_piece;
 
   std::vector<std::size_t> first(rows + 1, 0);
   std::vector<SetAside> set_aside(pieces);
@@ -186,7 +188,7 @@ Measurement ReadMerl(const InputFile& file, const ReadOptions& options) {
   Measurement measurement;
   measurement.channels.names = {"R", "G", "B"};
   measurement.isotropic = true;
-  measurement.conventions["merl-cell"] = options.merl_cell == CellPosition::kCentre ? "centre" : "edge";
+  measurement.conventions["merl-cell"] = position == CellPosition::kCentre ? "centre" : "edge";
   for (const SetAside& counts : set_aside) {
     for (int i = 0; i < kSetAsideReasons; ++i) {
       const auto reason = static_cast<SetAsideReason>(i);

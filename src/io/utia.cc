@@ -47,23 +47,28 @@ bool IsUtia(std::string_view bytes) {
 }
 
 Measurement ReadUtia(const InputFile& file, const ReadOptions& options) {
-  if (file.bytes.size() != kBytes) {
+  return ReadUtiaGrid(file, options, kUtiaGrid);
+}
+
+Measurement ReadUtiaGrid(const InputFile& file, const ReadOptions& options, const UtiaGrid& grid) {
+  const std::size_t pairs = grid.directions() * grid.directions(), bytes = 3 * pairs * sizeof(double);
+  if (file.bytes.size() != bytes) {
     FailAtByte(
-        file, std::min(file.bytes.size(), kBytes),
-        "a UTIA table has " + std::to_string(kBytes) + " bytes, but the file has " + std::to_string(file.bytes.size()));
+        file, std::min(file.bytes.size(), bytes),
+        "a UTIA table has " + std::to_string(bytes) + " bytes, but the file has " + std::to_string(file.bytes.size()));
   }
   MeasurementBuilder builder({{"R", "G", "B"}, {}});
   std::array<double, 3> values = {};
-  for (std::size_t pair = 0; pair < kPairs; ++pair) {
+  for (std::size_t pair = 0; pair < pairs; ++pair) {
     for (std::size_t c = 0; c < 3; ++c) {
       double stored = 0;
-      std::memcpy(&stored, file.bytes.data() + sizeof(double) * (pair + c * kPairs), sizeof(double));
+      std::memcpy(&stored, file.bytes.data() + sizeof(double) * (pair + c * pairs), sizeof(double));
       values[c] = std::isfinite(stored) ? UtiaValue(stored, options) : stored;
     }
-    builder.Add(UtiaDirection(pair / kUtiaDirections), UtiaDirection(pair % kUtiaDirections), values.data(),
+    builder.Add(grid.Direction(pair / grid.directions()), grid.Direction(pair % grid.directions()), values.data(),
                 static_cast<std::uint32_t>(pair));
   }
-  // At theta = 0 all 48 azimuths are one direction: these are duplicates.
+  // At theta = 0 all azimuths are one direction: these are duplicates.
   Measurement measurement = builder.Finish();
   EchoUtiaOptions(options, &measurement);
   return measurement;

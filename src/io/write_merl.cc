@@ -64,7 +64,7 @@ void WriteMerl(const BrdfFunction& brdf, const Channels& channels, const MerlWri
         "rgl, alta or csv");
   }
   constexpr std::size_t kH = 90, kD = 90, kP = 180, kCells = kH * kD * kP;
-  std::string bytes(MerlBytes(kP), '\0');
+  std::string bytes(MerlBytes({kH, kD, kP}), '\0');
   const std::array<std::int32_t, 3> dims = {kH, kD, kP};
   std::memcpy(bytes.data(), dims.data(), sizeof(dims));
   const double shift = options.cell == CellPosition::kCentre ? 0.5 : 0.0;
