@@ -168,6 +168,25 @@ Canvas DrawPage(const ReportData& data, double scale, const std::shared_ptr<Font
   return canvas;
 }
 
+Canvas DrawStackedPage(const std::string& title, const std::string& subtitle, const std::vector<Panel>& panels,
+                       double scale, const std::shared_ptr<Fonts>& fonts) {
+  const double width = kPageWidth - 2 * kMargin;
+  Canvas ruler(1, 1, scale, fonts);
+  double bottom = kHeader + kMargin / 2;
+  std::vector<Box> boxes;
+  for (const Panel& panel : panels) {
+    boxes.push_back({kMargin, bottom, width, kPanelHead + panel.height(&ruler, width)});
+    bottom = boxes.back().bottom() + kGap;
+  }
+  Canvas canvas(kPageWidth, std::ceil(bottom), scale, fonts);
+  const TextStyle head = {.size = style::kTitleSize, .color = style::kInk, .weight = Weight::kBold};
+  canvas.Text({kMargin, kMargin + 21}, canvas.Shorten(title, head, width, true), head);
+  const TextStyle sub = {.size = 13, .color = style::kSecondary};
+  canvas.Text({kMargin, kMargin + 47}, canvas.Shorten(subtitle, sub, width), sub);
+  for (std::size_t i = 0; i < panels.size(); ++i) DrawPanel(&canvas, panels[i], boxes[i]);
+  return canvas;
+}
+
 Canvas DrawPanelAlone(const Panel& panel, double width, double scale, const std::shared_ptr<Fonts>& fonts) {
   Canvas ruler(1, 1, scale, fonts);
   const double margin = 12, height = kPanelHead + panel.height(&ruler, width - 2 * margin) + 2 * margin;

@@ -17,6 +17,10 @@ Canvas DrawPage(const ReportData& data, double scale, const std::shared_ptr<Font
 // "isotropic GGX · masking ...": the choices of a model on one line.
 std::string ModelWords(const Model& model);
 
+// Panels of the whole width one below the other, under a heading of two lines.
+Canvas DrawStackedPage(const std::string& title, const std::string& subtitle, const std::vector<Panel>& panels,
+                       double scale, const std::shared_ptr<Fonts>& fonts);
+
 // The whole live page.
 std::string ReportHtml(const ReportData& data, const std::shared_ptr<Fonts>& fonts);
 

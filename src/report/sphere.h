@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "lobefit/core/off_center.h"
@@ -25,6 +26,8 @@ using BrdfFunction = std::function<bool(const Vec3& wi, const Vec3& wo, double* 
 
 LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, std::size_t channels, int size);
 LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int size);
+// The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
+std::optional<LitSphere> LightMeasured(const ReportData& data, const ChannelColor& to_color, int size);
 
 // Under an analytic sky with a low sun, 104 pixels wide. Light comes from `count` directions: half drawn from
 // the density of slopes of `lobe`, half by the cosine, weighted by the balance heuristic; the same ones for any brdf,

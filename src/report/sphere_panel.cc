@@ -69,6 +69,11 @@ Color Sky(const Vec3& w, bool grey) {
 // One point set for all pixels: the sky is smooth, and both spheres see the same directions.
 Vec2 Point2(int i, int count) { return {(i + 0.5) / (count / 2.0), std::fmod(0.5 + 0.6180339887498949 * i, 1.0)}; }
 
+bool IsCovered(const Sphere& sphere) {
+  const auto known = static_cast<double>(std::count(sphere.known.begin(), sphere.known.end(), 1));
+  return known >= kLeastCover * static_cast<double>(sphere.known.size());
+}
+
 struct Spheres {
   std::array<Sphere, 4> sphere;  // measured and fitted under the light, under the sky
   std::array<double, 2> exposure;
@@ -196,6 +201,16 @@ LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int 
   return LightSphere(fitted, to_color, data.channels(), size);
 }
 
+std::optional<LitSphere> LightMeasured(const ReportData& data, const ChannelColor& to_color, int size) {
+  if (!data.measurement.isotropic) return std::nullopt;
+  const IsotropicLookup lookup(data.measurement);
+  LitSphere sphere =
+      LightSphere([&lookup](const Vec3& wi, const Vec3& wo, double* f_r) { return lookup.Find(wi, wo, f_r); }, to_color,
+                  data.channels(), size);
+  if (!IsCovered(sphere)) return std::nullopt;
+  return sphere;
+}
+
 double SphereExposure(const LitSphere& sphere) {
   std::vector<double> brightest;
   for (const Color& c : sphere.color) {
@@ -222,9 +237,7 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     const IsotropicLookup lookup(data.measurement);
     const Brdf measured = [&lookup](const Vec3& wi, const Vec3& wo, double* f_r) { return lookup.Find(wi, wo, f_r); };
     spheres->sphere[0] = LightSphere(measured, to_color, data.channels(), kLightSize);
-    const auto known =
-        static_cast<double>(std::count(spheres->sphere[0].known.begin(), spheres->sphere[0].known.end(), 1));
-    spheres->measured = known >= kLeastCover * static_cast<double>(spheres->sphere[0].known.size());
+    spheres->measured = IsCovered(spheres->sphere[0]);
     if (spheres->measured)
       spheres->sphere[2] = SkySphere(measured, lobe, to_color, data.channels(), kSkySamples, data.threads);
   }
