@@ -16,15 +16,20 @@ enum class Transform { kLog1p, kCubeRoot, kLinear, kRelative };
 
 Transform TransformOf(Metric metric);
 
-// Samples as the loop reads them. target[c][i]: transformed measured value (kRelative: the measured f_r itself).
+// Samples as the loop reads them, in place: what follows from them (transformed values, weights) is computed anew in
+// every pass, so that a fit needs no memory that grows with their number.
 struct KernelSamples {
-  const double* direction[6];  // wi_x, wi_y, wi_z, wo_x, wo_y, wo_z
-  std::vector<const double*> target;
-  const double* sqrt_weight = nullptr;  // null: all 1
+  const double* direction[6];           // wi_x, wi_y, wi_z, wo_x, wo_y, wo_z
+  std::vector<const double*> measured;  // f_r[c][i]
+  // The weight of a squared residual is weight_scale times these; null: 1.
+  const double* weight = nullptr;
+  const double* solid_angle = nullptr;
+  bool sin_i = false, sin_o = false;  // times the sine of the polar angle
+  double weight_scale = 1;
   std::size_t count = 0;
 };
 
-// target = T(measured), by the same instructions as the loop, so that a perfect model has residuals of exactly zero.
+// target = T(f_r), kRelative: f_r itself; by the same instructions as the loop.
 void TransformMeasured(Transform transform, const double* f_r, const double* cos_theta_i, std::size_t count,
                        double* target);
 

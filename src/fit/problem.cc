@@ -72,35 +72,29 @@ void SetDirections(const Samples& samples, KernelSamples* kernel) {
 
 Problem::Problem(const Samples& samples, const Recipe& recipe) {
   SetDirections(samples, &kernel_);
-  const Transform transform = TransformOf(recipe.metric);
-  for (const std::vector<double>& values : samples.values) {
-    target_.emplace_back(samples.size());
-    TransformMeasured(transform, values.data(), samples.wi_z.data(), samples.size(), target_.back().data());
-  }
-  for (const std::vector<double>& target : target_) kernel_.target.push_back(target.data());
-
+  for (const std::vector<double>& values : samples.values) kernel_.measured.push_back(values.data());
   const bool by_solid_angle = EffectiveWeighting(recipe.weighting, samples) == Weighting::kSolidAngle;
   if (by_solid_angle && samples.solid_angle.empty()) {
     throw InputError(
         "weighting 'solid-angle': this format lists directions without cells, so their solid angles are not known; use "
         "--weighting cells");
   }
-  const bool by_sines = recipe.metric == Metric::kNgan || recipe.metric == Metric::kLowLog;
-  if (samples.weight.empty() && !by_solid_angle && !by_sines) return;
-  sqrt_weight_.resize(samples.size());
+  kernel_.sin_i = recipe.metric == Metric::kNgan || recipe.metric == Metric::kLowLog;
+  kernel_.sin_o = recipe.metric == Metric::kNgan;
+  if (!samples.weight.empty()) kernel_.weight = samples.weight.data();
+  if (by_solid_angle) kernel_.solid_angle = samples.solid_angle.data();
+  if (kernel_.weight == nullptr && !by_solid_angle && !kernel_.sin_i) return;
+  // Weights of mean 1.
   double sum = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     double weight = samples.weight.empty() ? 1.0 : samples.weight[i];
     if (by_solid_angle) weight *= samples.solid_angle[i];
-    if (recipe.metric == Metric::kNgan) weight *= Sine(samples.wi_z[i]) * Sine(samples.wo_z[i]);
-    if (recipe.metric == Metric::kLowLog) weight *= Sine(samples.wi_z[i]);
-    sqrt_weight_[i] = weight;
+    if (kernel_.sin_i) weight *= Sine(samples.wi_z[i]);
+    if (kernel_.sin_o) weight *= Sine(samples.wo_z[i]);
     sum += weight;
   }
   if (!(sum > 0)) throw InputError("all weights of the samples are zero; choose another --metric or --weighting");
-  const double scale = static_cast<double>(samples.size()) / sum;
-  for (double& weight : sqrt_weight_) weight = std::sqrt(weight * scale);
-  kernel_.sqrt_weight = sqrt_weight_.data();
+  kernel_.weight_scale = static_cast<double>(samples.size()) / sum;
 }
 
 KernelSums Problem::Sum(const KernelModel& model, bool gradient, ThreadPool* pool) const {

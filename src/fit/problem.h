@@ -25,7 +25,7 @@ class Problem {
   Problem(const Samples& samples, const Recipe& recipe);
 
   std::size_t size() const { return kernel_.count; }
-  std::size_t channels() const { return target_.size(); }
+  std::size_t channels() const { return kernel_.measured.size(); }
   const KernelSamples& kernel_samples() const { return kernel_; }
 
   // Sums over all samples. The samples are cut into a fixed number of runs whose sums are added in order, so that the
@@ -33,8 +33,6 @@ class Problem {
   KernelSums Sum(const KernelModel& model, bool gradient, ThreadPool* pool) const;
 
  private:
-  std::vector<std::vector<double>> target_;
-  std::vector<double> sqrt_weight_;
   KernelSamples kernel_;
 };
 

@@ -39,30 +39,6 @@ Vec3 PeakNormal(const Samples& samples) {
   return Normalized(sum);
 }
 
-// Weights that turn the linear metric into the recipe's, to first order about the measured values: (dT/dv)^2 at the
-// measured v.
-std::vector<double> LinearisedWeights(const Samples& samples, Metric metric) {
-  std::vector<double> weight(samples.size(), 0.0);
-  double mean = 0;
-  for (const std::vector<double>& values : samples.values) {
-    for (std::size_t i = 0; i < samples.size(); ++i) mean += std::fabs(values[i] * samples.wi_z[i]);
-  }
-  mean /= static_cast<double>(samples.size() * samples.values.size());
-  // Keeps the slope of the cube root and of the relative error finite at zero.
-  const double floor = 1e-3 * mean + 1e-300;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    double v = 0;
-    for (const std::vector<double>& values : samples.values) v += values[i] * samples.wi_z[i];
-    v = std::max(v / static_cast<double>(samples.values.size()), floor);
-    double slope = 1;
-    if (TransformOf(metric) == Transform::kLog1p) slope = 1 / (1 + v);
-    if (TransformOf(metric) == Transform::kCubeRoot) slope = 1 / std::cbrt(v * v);
-    if (TransformOf(metric) == Transform::kRelative) slope = 1 / v;
-    weight[i] = slope * slope * (samples.weight.empty() ? 1.0 : samples.weight[i]);
-  }
-  return weight;
-}
-
 // Candidates with the entries that the recipe gives a start for replaced by it; repeated candidates are dropped.
 std::vector<Ellipsoid> WithGivenStarts(std::vector<Ellipsoid> candidates, const Recipe& recipe, std::size_t lobe) {
   std::vector<Ellipsoid> distinct;
@@ -140,17 +116,38 @@ std::vector<std::size_t> StratifiedSubsample(std::size_t samples, std::size_t co
   return indices;
 }
 
+std::vector<double> LinearisedWeights(const Samples& samples, Metric metric) {
+  std::vector<double> weight(samples.size(), 0.0);
+  double mean = 0;
+  for (const std::vector<double>& values : samples.values) {
+    for (std::size_t i = 0; i < samples.size(); ++i) mean += std::fabs(values[i] * samples.wi_z[i]);
+  }
+  mean /= static_cast<double>(samples.size() * samples.values.size());
+  // Keeps the slope of the cube root and of the relative error finite at zero.
+  const double floor = 1e-3 * mean + 1e-300;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    double v = 0;
+    for (const std::vector<double>& values : samples.values) v += values[i] * samples.wi_z[i];
+    v = std::max(v / static_cast<double>(samples.values.size()), floor);
+    double slope = 1;
+    if (TransformOf(metric) == Transform::kLog1p) slope = 1 / (1 + v);
+    if (TransformOf(metric) == Transform::kCubeRoot) slope = 1 / std::cbrt(v * v);
+    if (TransformOf(metric) == Transform::kRelative) slope = 1 / v;
+    weight[i] = slope * slope * (samples.weight.empty() ? 1.0 : samples.weight[i]);
+  }
+  return weight;
+}
+
+Ellipsoid PeakAxis(const Samples& samples, Ndf ndf, double plane_azimuth) {
+  const Vec3 peak = PeakNormal(samples);
+  if (ndf != Ndf::kGgxTilted) return {1, 1, std::asin(std::clamp(peak.y, -1.0, 1.0)), std::atan2(-peak.x, peak.z), 0};
+  const double along = peak.x * std::cos(plane_azimuth) + peak.y * std::sin(plane_azimuth);
+  return {1, 1, 0, std::atan2(-along, peak.z), -plane_azimuth};
+}
+
 std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double plane_azimuth) {
   std::vector<Ellipsoid> tilts = {{1, 1, 0, 0, ndf == Ndf::kGgxTilted ? -plane_azimuth : 0.0}};
-  if (IsTilted(ndf)) {
-    const Vec3 peak = PeakNormal(samples);
-    if (ndf != Ndf::kGgxTilted) {
-      tilts.push_back({1, 1, std::asin(std::clamp(peak.y, -1.0, 1.0)), std::atan2(-peak.x, peak.z), 0});
-    } else {
-      const double along = peak.x * std::cos(plane_azimuth) + peak.y * std::sin(plane_azimuth);
-      tilts.push_back({1, 1, 0, std::atan2(-along, peak.z), -plane_azimuth});
-    }
-  }
+  if (IsTilted(ndf)) tilts.push_back(PeakAxis(samples, ndf, plane_azimuth));
   std::vector<Ellipsoid> shapes;
   for (const Ellipsoid& tilt : tilts) {
     for (const double alpha : kAlphas) {

@@ -24,6 +24,14 @@ std::vector<std::size_t> StratifiedSubsample(std::size_t samples, std::size_t co
 // half vector where the measured density of normals peaks; for anisotropic ones, four orientations.
 std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double plane_azimuth);
 
+// A shape with alphas 1 whose axis points to where the measured density of half vectors peaks; for kGgxTilted the part
+// of that within the plane.
+Ellipsoid PeakAxis(const Samples& samples, Ndf ndf, double plane_azimuth);
+
+// Weights that turn the squared differences of f cos_theta_i (of f for the relative metric) into the metric's, to first
+// order about the measured values: (dT/dv)^2 at the measured v, times the samples' own.
+std::vector<double> LinearisedWeights(const Samples& samples, Metric metric);
+
 // Best amplitudes and albedos for the shapes in `u`, in place, within their bounds: Gauss-Newton on the linear
 // parameters only, a few steps (one is exact where the metric is quadratic in f_r). Returns the cost.
 double SolveLinear(const Problem& problem, const Layout& layout, std::vector<double>* u, ThreadPool* pool);

@@ -58,6 +58,27 @@ T ResidualOf(Metric metric, const T& f, double m, const Vec3& wi) {
   return (f - m) * wi.z;
 }
 
+TEST(TransformMeasured, IsAccurateToRounding) {
+  std::vector<double> f, cos_i;
+  for (int k = -400; k <= 400; ++k) {
+    const double value = std::pow(10, k / 20.0) * (1 + 0.001 * k);
+    f.insert(f.end(), {value, -value});
+    cos_i.insert(cos_i.end(), {1, 1});
+  }
+  f.push_back(0);
+  cos_i.push_back(1);
+  std::vector<double> root(f.size()), logarithm(f.size());
+  TransformMeasured(Transform::kCubeRoot, f.data(), cos_i.data(), f.size(), root.data());
+  TransformMeasured(Transform::kLog1p, f.data(), cos_i.data(), f.size(), logarithm.data());
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    EXPECT_NEAR(root[i], std::cbrt(f[i]), 0x1p-51 * std::fabs(std::cbrt(f[i]))) << f[i];  // two units in the last place
+    if (f[i] > -0.9) {
+      EXPECT_NEAR(logarithm[i], std::log1p(f[i]), 1e-15 * std::fabs(std::log1p(f[i]))) << f[i];
+    }
+  }
+  EXPECT_EQ(root.back(), 0);
+}
+
 class EveryMetric : public testing::TestWithParam<Metric> {};
 
 TEST_P(EveryMetric, SumsAgreeWithJets) {
@@ -141,7 +162,9 @@ TEST(Kernel, LossesWeighASampleOverItsChannels) {
     recipe.loss_scale = 0.05;
     const Layout layout(recipe, measurement.channels.names);
     const Problem problem(measurement.samples, recipe);
-    const std::vector<double> u = layout.FromShapes({{0.33, 0.14, 0.05, 0.01, 0.3}});
+    std::vector<double> u = layout.FromShapes({{0.33, 0.14, 0.05, 0.01, 0.3}});
+    std::fill(u.begin() + 5, u.begin() + 8, 0.4);
+    std::fill(u.begin() + 8, u.end(), 0.1);
     Eigen::MatrixXd hessian;
     Eigen::VectorXd gradient;
     Linearise(problem, layout, u.data(), &pool, &hessian, &gradient);

@@ -1,0 +1,190 @@
+#include "lobefit/fit/fit_many.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/parallel.h"
+#include "lobefit/core/lobe.h"
+#include "lobefit/fit/layout.h"
+#include "lobefit/fit/problem.h"
+#include "lobefit/fit/solve.h"
+#include "lobefit/fit/starts.h"
+
+namespace lobefit {
+namespace {
+
+constexpr double kAlphas[] = {0.01, 0.02, 0.035, 0.06, 0.1, 0.17, 0.28, 0.45, 0.7};
+
+// Amplitude and albedo of each channel, best in the linearised metric and within their bounds, for one shape; and the
+// sum of squares left.
+struct LinearFit {
+  double square = 0;
+  std::vector<double> amplitude, diffuse;
+};
+
+LinearFit SolveForShape(const Samples& samples, const Layout& layout, const std::vector<double>& weight,
+                        const SlopeCoordinates& shape, std::vector<double>* specular, std::vector<double>* cos_d) {
+  const Lobe& lobe = layout.recipe().model.lobes[0];
+  const std::size_t count = samples.size();
+  const DirectionArrays directions = {samples.wi_x.data(),
+                                      samples.wi_y.data(),
+                                      samples.wi_z.data(),
+                                      samples.wo_x.data(),
+                                      samples.wo_y.data(),
+                                      samples.wo_z.data(),
+                                      count};
+  SpecularLobe(directions, lobe, shape, specular->data(), cos_d->data(), nullptr);
+  const bool schlick = lobe.fresnel == Fresnel::kSchlick, lambert = layout.recipe().model.diffuse == Diffuse::kLambert;
+  LinearFit fit;
+  for (const std::vector<double>& values : samples.values) {
+    // f = offset + amplitude * slope + diffuse / pi.
+    double aa = 0, ad = 0, dd = 0, ar = 0, dr = 0, rr = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double x = 1 - (*cos_d)[i], p5 = schlick ? x * x * x * x * x : 0.0;
+      const double slope = (*specular)[i] * (1 - p5), rest = values[i] - (*specular)[i] * p5, w = weight[i];
+      aa += w * slope * slope;
+      ad += w * slope;
+      dd += w;
+      ar += w * slope * rest;
+      dr += w * rest;
+      rr += w * rest * rest;
+    }
+    ad *= kInvPi, dd *= kInvPi * kInvPi, dr *= kInvPi;
+    const double high = schlick ? 1.0 : std::numeric_limits<double>::max();
+    const double determinant = aa * dd - ad * ad;
+    double a = ar / aa, d = 0;
+    if (lambert && determinant > 1e-12 * aa * dd) {
+      a = (dd * ar - ad * dr) / determinant;
+      d = std::clamp((aa * dr - ad * ar) / determinant, 0.0, 1.0);
+      // The other one again, where a bound was met.
+      a = (ar - ad * d) / aa;
+      if (a < 0 || a > high) d = std::clamp((dr - ad * std::clamp(a, 0.0, high)) / dd, 0.0, 1.0);
+    }
+    a = std::isfinite(a) ? std::clamp(a, 0.0, high) : 0.0;
+    fit.amplitude.push_back(a);
+    fit.diffuse.push_back(d);
+    fit.square += rr - 2 * (a * ar + d * dr) + a * a * aa + 2 * a * d * ad + d * d * dd;
+  }
+  return fit;
+}
+
+std::vector<double> BestStart(const Samples& samples, const Layout& layout) {
+  const Recipe& recipe = layout.recipe();
+  const Ndf ndf = recipe.model.lobes[0].ndf;
+  std::vector<double> weight = LinearisedWeights(samples, recipe.metric);
+  // Those are for f cos_theta_i.
+  for (std::size_t i = 0; i < weight.size(); ++i) weight[i] *= samples.wi_z[i] * samples.wi_z[i];
+  std::vector<Ellipsoid> axes = {{1, 1, 0, 0, ndf == Ndf::kGgxTilted ? -recipe.plane_azimuth : 0.0}};
+  if (IsTilted(ndf)) axes.push_back(PeakAxis(samples, ndf, recipe.plane_azimuth));
+  std::vector<double> best, specular(samples.size()), cos_d(samples.size());
+  LinearFit best_fit;
+  for (const Ellipsoid& axis : axes) {
+    for (const double alpha : kAlphas) {
+      Ellipsoid shape = axis;
+      shape.alpha_x = shape.alpha_y = alpha;
+      const LinearFit fit =
+          SolveForShape(samples, layout, weight, SlopeCoordinatesFromEllipsoid(shape), &specular, &cos_d);
+      if (!std::isfinite(fit.square) || (!best.empty() && fit.square >= best_fit.square)) continue;
+      best_fit = fit;
+      best = layout.FromShapes({shape});
+    }
+  }
+  for (std::size_t c = 0; c < layout.channels() && !best.empty(); ++c) {
+    const std::vector<Layout::Linear>& linear = layout.linear(c);
+    const double found[] = {best_fit.amplitude[c], best_fit.diffuse[c]};
+    for (std::size_t k = 0; k < linear.size(); ++k) {
+      if (linear[k].index >= 0) best[static_cast<std::size_t>(linear[k].index)] = found[k];
+    }
+  }
+  return best;
+}
+
+// Levenberg-Marquardt on J^T J and J^T r. A coordinate at its bound whose cost falls outwards is held there for the
+// step.
+SmallFit Descend(const Problem& problem, const Layout& layout, std::vector<double> u, const FitManyOptions& options) {
+  ThreadPool alone(1);
+  const auto n = static_cast<Eigen::Index>(layout.size());
+  Eigen::MatrixXd hessian, tried_hessian, damped;
+  Eigen::VectorXd gradient, tried_gradient, step;
+  SmallFit fit;
+  fit.cost = Linearise(problem, layout, u.data(), &alone, &hessian, &gradient);
+  double damping = 1e-3, growth = 2;
+  std::vector<double> tried(u.size());
+  for (; fit.iterations < options.max_iterations && std::isfinite(fit.cost); ++fit.iterations) {
+    damped = hessian;
+    Eigen::VectorXd right = -gradient;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Coordinate& c = layout.coordinates()[static_cast<std::size_t>(i)];
+      const double at = u[static_cast<std::size_t>(i)];
+      damped(i, i) += damping * damped(i, i) + 1e-300;
+      if ((at <= c.low && right(i) < 0) || (at >= c.high && right(i) > 0)) {
+        damped.row(i).setZero();
+        damped.col(i).setZero();
+        damped(i, i) = 1;
+        right(i) = 0;
+      }
+    }
+    step = damped.ldlt().solve(right);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const Coordinate& c = layout.coordinates()[i];
+      tried[i] = std::clamp(u[i] + step(static_cast<Eigen::Index>(i)), c.low, c.high);
+    }
+    const double cost = Linearise(problem, layout, tried.data(), &alone, &tried_hessian, &tried_gradient);
+    if (!(cost < fit.cost)) {
+      // At the minimum to rounding, or too long a step.
+      if (step.dot(-gradient) <= options.function_tolerance * fit.cost || damping > 1e12) {
+        fit.converged = true;
+        break;
+      }
+      damping *= growth;
+      growth *= 2;
+      continue;
+    }
+    const double decrease = fit.cost - cost;
+    fit.converged = decrease <= options.function_tolerance * fit.cost;
+    u = tried;
+    fit.cost = cost;
+    hessian.swap(tried_hessian);
+    gradient.swap(tried_gradient);
+    damping = std::max(damping / 5, 1e-12);
+    growth = 2;
+    if (fit.converged) break;
+  }
+  fit.values = layout.Report(u.data());
+  return fit;
+}
+
+}  // namespace
+
+std::vector<SmallFit> FitMany(const Recipe& recipe, const std::vector<const Samples*>& samples,
+                              const FitManyOptions& options) {
+  const Model& model = recipe.model;
+  const bool linear = model.lobes.size() == 1 && model.diffuse != Diffuse::kMicrofacet &&
+                      (model.lobes[0].fresnel == Fresnel::kSchlick || model.lobes[0].fresnel == Fresnel::kNone);
+  if (!linear) {
+    throw InputError("recipe '" + recipe.name +
+                     "': many small fits take one lobe with fresnel 'schlick' or 'none' and a Lambertian part or none; "
+                     "fit the measurements one by one instead");
+  }
+  std::vector<SmallFit> fits(samples.size());
+  if (samples.empty()) return fits;
+  const Layout layout(recipe, std::vector<std::string>(samples[0]->values.size()));
+  ThreadPool pool(std::max(1, options.threads));
+  // Several problems a task: one alone takes less time than handing it out.
+  constexpr std::size_t kChunk = 16;
+  pool.Run((samples.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    for (std::size_t k = chunk * kChunk; k < std::min(samples.size(), (chunk + 1) * kChunk); ++k) {
+      if (samples[k]->size() * layout.channels() < layout.size()) continue;
+      const Problem problem(*samples[k], recipe);
+      const std::vector<double> start = BestStart(*samples[k], layout);
+      if (!start.empty()) fits[k] = Descend(problem, layout, start, options);
+    }
+  });
+  return fits;
+}
+
+}  // namespace lobefit
