@@ -127,6 +127,16 @@ Minimum Describe(const Layout& layout, const DistinctMinimum& minimum) {
   return described;
 }
 
+// The cost of a model that reflects nothing.
+double CostOfBlack(const Problem& problem, KernelModel kernel, ThreadPool* pool) {
+  for (KernelLobe& lobe : kernel.lobes) {
+    lobe.kind.fresnel = Fresnel::kNone;
+    lobe.fresnel.assign(kernel.channels, 0.0);
+  }
+  std::fill(kernel.diffuse.begin(), kernel.diffuse.end(), 0.0);
+  return problem.Sum(kernel, false, pool).sum_rho / 2;
+}
+
 }  // namespace
 
 MeasurementTraits TraitsOf(const Measurement& measurement) {
@@ -223,7 +233,17 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
       &pool);
   material.cost = best.cost;
   for (const DistinctMinimum& minimum : minima) material.minima.push_back(Describe(layout, minimum));
-  material.termination = {best.converged, uncertainty.determined, best.message, best.iterations};
+  // Values that are noise about zero fit any lobe of no height.
+  constexpr double kLeastExplained = 0.1;
+  const double explained = 1 - best.cost / CostOfBlack(problem, kernel, &pool);
+  if (explained < kLeastExplained) {
+    material.degenerate.push_back(fmt::format(
+        "everything: the model explains {:.1f} % of the measurement's squares, no more than noise about zero "
+        "would leave it; are these values of a sample?",
+        100 * std::max(0.0, explained)));
+  }
+  material.termination = {best.converged, uncertainty.determined && !(explained < kLeastExplained), best.message,
+                          best.iterations};
   material.source = {measurement->source, measurement->sha256, measurement->format, measurement->conventions};
   material.recipe_name = recipe.name;
   material.recipe_reason = recipe.reason;

@@ -64,6 +64,7 @@ void Refine(const Problem& problem, const Layout& layout, std::size_t most, doub
   if (minima->empty()) return;
   SolveOptions finish;
   finish.function_tolerance = tolerance;
+  finish.max_iterations = 100;
   const double limit = worse * minima->front().solution.cost;
   std::size_t refined = 0;
   for (DistinctMinimum& minimum : *minima) {

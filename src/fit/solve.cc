@@ -203,6 +203,7 @@ Solution Solve(const Problem& problem, const Layout& layout, const std::vector<d
   for (int round = 0; round < kMaxRounds; ++round) {
     solver.max_num_iterations = options.max_iterations - solution.iterations;
     if (solver.max_num_iterations <= 0) break;
+    const double before = solution.cost;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &ceres_problem, &summary);
     // In place: the problem keeps the address.
@@ -213,6 +214,8 @@ Solution Solve(const Problem& problem, const Layout& layout, const std::vector<d
     solution.iterations += static_cast<int>(summary.iterations.size());
     solution.message = summary.message;
     if (!solution.converged || !WantsInside(problem, layout, solution.u, pool)) break;
+    // Where the model vanishes the cube root has no derivative, and going on from the bound gains nothing.
+    if (round > 0 && before - solution.cost <= 1e-8 * before) break;
     solution.converged = false;
   }
   return solution;

@@ -10,7 +10,7 @@
 namespace lobefit {
 
 struct SolveOptions {
-  int max_iterations = 100;
+  int max_iterations = 300;
   // Relative decrease of the cost at which a descent ends.
   double function_tolerance = 1e-12;
 };
