@@ -103,7 +103,8 @@ std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common) {
   app->add_option("--name", verb->name, "NAME of the results (default: the file's name without its ending)");
   app->add_option("--format", verb->format, "formats of the report: png (default), html, or both with a comma between");
   app->add_flag("--no-report", verb->no_report, "write no picture");
-  app->add_option("--starts", verb->fit.starts, "descents from the best-ranked starts (default 8)")
+  app->add_option("--starts", verb->fit.starts,
+                  "descents from the best-ranked starts (default 8; five times as many for several lobes)")
       ->check(CLI::Range(1, 100000));
   app->add_option("--seed", verb->fit.seed, "seed of the subsample on which starts are ranked (default 1)");
   verb->recipe.AddTo(app);
