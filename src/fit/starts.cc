@@ -15,6 +15,7 @@ namespace {
 
 // A factor of 1.6 to 2 between neighbours: from any lobe the nearest is well within the basin of its minimum.
 constexpr double kAlphas[] = {0.005, 0.01, 0.02, 0.04, 0.08, 0.15, 0.25, 0.4, 0.65};
+constexpr double kMirror = 5e-4;
 constexpr double kAspect = 4;  // alpha_x / alpha_y of the anisotropic candidates
 
 // Where the density of normals peaks: mean half vector of the samples with the highest f_r cos_theta_i cos_theta_o
@@ -55,6 +56,10 @@ std::vector<Ellipsoid> WithGivenStarts(std::vector<Ellipsoid> candidates, const 
     if (!seen) distinct.push_back(shape);
   }
   return distinct;
+}
+
+bool SameKind(const Lobe& a, const Lobe& b) {
+  return a.ndf == b.ndf && a.masking == b.masking && a.fresnel == b.fresnel && a.metal == b.metal;
 }
 
 // min 1/2 x^T H x + g^T x with low <= x <= high, by an active set: what leaves its bounds is held there.
@@ -193,13 +198,19 @@ std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, co
   std::vector<std::vector<Ellipsoid>> tuples = {{}};
   for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
     std::vector<std::vector<Ellipsoid>> longer;
-    const std::vector<Ellipsoid> candidates =
-        WithGivenStarts(CandidateShapes(samples, recipe.model.lobes[l].ndf, recipe.plane_azimuth), recipe, l);
+    std::vector<Ellipsoid> shapes = CandidateShapes(samples, recipe.model.lobes[l].ndf, recipe.plane_azimuth);
+    // Of several lobes one with Schlick's edge may have to vanish, which it does as a mirror only.
+    if (recipe.model.lobes.size() > 1) shapes.push_back({kMirror, kMirror, 0, 0, 0});
+    const std::vector<Ellipsoid> candidates = WithGivenStarts(shapes, recipe, l);
     for (const std::vector<Ellipsoid>& tuple : tuples) {
       for (const Ellipsoid& shape : candidates) {
-        // Lobes are interchangeable: narrower ones first; and of several lobes only isotropic candidates are combined.
+        // Lobes of one kind are interchangeable: narrower ones first; and of several lobes only isotropic candidates
+        // are combined.
         const bool given = !recipe.parameters[FirstParameter(recipe.model, l)].start.empty();
-        if (!given && !tuple.empty() && shape.alpha_x <= tuple.back().alpha_x) continue;
+        const bool same = l > 0 && SameKind(recipe.model.lobes[l - 1], recipe.model.lobes[l]);
+        if (!given && !tuple.empty() &&
+            (same ? shape.alpha_x <= tuple.back().alpha_x : shape.alpha_x == tuple.back().alpha_x))
+          continue;
         if (!given && recipe.model.lobes.size() > 1 && shape.alpha_x != shape.alpha_y) continue;
         longer.push_back(tuple);
         longer.back().push_back(shape);

@@ -106,6 +106,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   Recipe recipe = DefaultRecipe({std::vector<Lobe>(lobes, Lobe{Ndf::kGgx}), Diffuse::kLambert}, "study");
+  // As in fits/ggx-two-lobes.toml: only the first lobe has Schlick's edge, so that one lobe is among two.
+  for (std::size_t l = 1; l < lobes; ++l) recipe.model.lobes[l].fresnel = Fresnel::kNone;
   recipe.metric = metric->value;
   recipe.weighting = weighting->value;
   Run(recipe, std::atoi(argv[4]), {argv + 5, argv + argc});
