@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "lobefit/base/base64.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"

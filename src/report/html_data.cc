@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "lobefit/base/base64.h"
 #include "lobefit/base/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/report/color.h"

@@ -1,4 +1,4 @@
-// Text for a page: JSON inside HTML, HTML text, base64.
+// Text for a page: JSON inside HTML, HTML text.
 #pragma once
 
 #include <string>
@@ -12,6 +12,5 @@ std::string JsonString(std::string_view text);
 std::string JsonNumber(double value, int digits = 6);
 // With &, <, > and quotes escaped.
 std::string HtmlText(std::string_view text);
-std::string Base64(std::string_view bytes);
 
 }  // namespace lobefit

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lobefit/base/base64.h"
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
@@ -30,11 +31,13 @@ TEST(WebText, EscapesWhatWouldEndItsElement) {
   EXPECT_EQ(JsonNumber(0.1234567, 4), "0.1235");
 }
 
-TEST(WebText, Base64OfRfc4648) {
+TEST(Base64, OfRfc4648) {
   EXPECT_EQ(Base64(""), "");
   EXPECT_EQ(Base64("f"), "Zg==");
   EXPECT_EQ(Base64("fo"), "Zm8=");
   EXPECT_EQ(Base64("foobar"), "Zm9vYmFy");
+  for (const char* text : {"", "f", "fo", "foo", "foob"}) EXPECT_EQ(FromBase64(Base64(text)), text);
+  for (const char* text : {"Z", "Zg=", "Z===", "Zg==Zg==", "Z!=="}) EXPECT_EQ(FromBase64(text), std::nullopt) << text;
 }
 
 struct PageCase {
