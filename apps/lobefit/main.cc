@@ -26,6 +26,7 @@ constexpr Verb kVerbs[] = {
     {"compare", "fit several recipes, judge them on held-out directions, recommend one", SetUpCompare},
     {"report", "draw the report of a fitted material against its measurement again", SetUpReport},
     {"convert", "write a measurement file in another format, and say what was lost", SetUpConvert},
+    {"export", "write a fitted material for renderers, and say what each cannot carry", SetUpExport},
     {"synth", "make a synthetic measurement file from a material or recipe", SetUpSynth},
     {"eval", "evaluate a quantity of the papers, with gradient, for rows of CSV", SetUpEval},
 };

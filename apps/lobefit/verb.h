@@ -23,6 +23,7 @@ using VerbSetup = std::function<int()> (*)(CLI::App* app, CommonOptions* common)
 std::function<int()> SetUpEval(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpCompare(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpConvert(CLI::App* app, CommonOptions* common);
+std::function<int()> SetUpExport(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common);

@@ -1,0 +1,88 @@
+// lobefit export: the fitted material as files that renderers load, and what each of them cannot carry.
+#include <filesystem>
+#include <memory>
+
+#include "verb.h"
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+#include "lobefit/export/export.h"
+#include "lobefit/material/json.h"
+
+namespace lobefit {
+namespace {
+
+struct ExportVerb {
+  std::string material, targets, out = ".", name;
+  bool refit = false, copy = false, list = false;
+};
+
+std::string TargetTable() {
+  std::string text;
+  for (const Target& target : ExportTargets()) {
+    text += fmt::format("{:<14} {}\n{:<14} load: {}\n", target.name, target.description, "", target.load);
+  }
+  return text;
+}
+
+std::vector<const Target*> ParseTargets(const std::string& text) {
+  std::vector<const Target*> targets;
+  for (const std::string_view name : Split(text, ',')) {
+    const Target* target = &FindTarget(Trim(name));
+    if (std::find(targets.begin(), targets.end(), target) == targets.end()) targets.push_back(target);
+  }
+  return targets;
+}
+
+int RunExport(const ExportVerb& verb, const CommonOptions& common) {
+  if (verb.list) {
+    fmt::print("{}", TargetTable());
+    return kExitDone;
+  }
+  if (verb.material.empty() || verb.targets.empty()) {
+    throw UsageError(
+        "a material and --to TARGET[,TARGET] are needed; the targets are listed by `lobefit export --list`");
+  }
+  ExportOptions options;
+  options.targets = ParseTargets(verb.targets);
+  options.folder = verb.out;
+  options.name = verb.name;
+  if (options.name.empty()) {
+    options.name = std::filesystem::path(verb.material).filename().string();
+    for (const std::string_view ending : {".json", ".material"}) {
+      if (options.name.size() > ending.size() && options.name.ends_with(ending)) {
+        options.name.resize(options.name.size() - ending.size());
+      }
+    }
+  }
+  if (options.name.find('/') != std::string::npos) {
+    throw UsageError(fmt::format("--name '{}' is a path; the folder is given by --out", Excerpt(options.name)));
+  }
+  options.material_file = std::filesystem::path(verb.material).filename().string();
+  options.command = common.command;
+  options.numbers = verb.refit ? Numbers::kRefitted : verb.copy ? Numbers::kCopied : Numbers::kBetter;
+  options.threads = common.Threads();
+  const Material material = ReadMaterial(verb.material);
+  const std::vector<ExportResult> results = ExportMaterial(material, options);
+  fmt::print("{}", common.json ? ExportJson(material, options, results) : ExportSummary(results));
+  return kExitDone;
+}
+
+}  // namespace
+
+std::function<int()> SetUpExport(CLI::App* app, CommonOptions* common) {
+  auto verb = std::make_shared<ExportVerb>();
+  app->add_option("MATERIAL", verb->material, "a *.material.json");
+  app->add_option("--to", verb->targets, "targets with commas between; --list shows them");
+  app->add_option("--out", verb->out, "folder of the files (default: this one)");
+  app->add_option("--name", verb->name, "name of the material and its files (default: that of MATERIAL)");
+  CLI::Option* refit = app->add_flag("--refit", verb->refit,
+                                     "fit the target's own model to the fit instead of copying its numbers (default: "
+                                     "whichever is nearer)");
+  app->add_flag("--copy", verb->copy, "copy the numbers of the fit")->excludes(refit);
+  app->add_flag("--list", verb->list, "list the targets");
+  return [=] { return RunExport(*verb, *common); };
+}
+
+}  // namespace lobefit

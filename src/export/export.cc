@@ -1,0 +1,163 @@
+#include "lobefit/export/export.h"
+
+#include <chrono>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/progress.h"
+#include "lobefit/base/text.h"
+#include "lobefit/base/version.h"
+#include "lobefit/export/refit.h"
+
+namespace lobefit {
+namespace {
+
+void CheckRefusals(const FittedBrdf& fit, const ExportOptions& options) {
+  std::vector<std::string> reasons;
+  for (const Target* target : options.targets) {
+    const std::string reason = target->refusal(fit);
+    if (!reason.empty()) reasons.push_back(fmt::format("{} cannot hold this material: {}", target->name, reason));
+  }
+  if (reasons.empty()) return;
+  std::vector<std::string> can;
+  for (const Target& target : ExportTargets()) {
+    if (target.refusal(fit).empty()) can.emplace_back(target.name);
+  }
+  throw InputError(fmt::format("{}: {}; targets that can: {}", options.material_file, Join(reasons, "; "), Join(can)));
+}
+
+std::string ErrorWords(const ExportError& error) {
+  return fmt::format("median {:.2g} %, 90 % within {:.2g} %, at most {:.3g} %, albedo within {:.2g} %",
+                     100 * error.median, 100 * error.percentile_90, 100 * error.maximum, 100 * error.albedo);
+}
+
+// One line for all features with the same fate.
+std::string CarriedLines(const std::vector<Carried>& rows) {
+  std::string text;
+  std::vector<bool> done(rows.size(), false);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (done[i]) continue;
+    std::vector<std::string> features;
+    for (std::size_t j = i; j < rows.size(); ++j) {
+      if (rows[j].how != rows[i].how || rows[j].note != rows[i].note) continue;
+      features.push_back(rows[j].feature);
+      done[j] = true;
+    }
+    const char* how = rows[i].how == Carries::kExactly         ? "exactly"
+                      : rows[i].how == Carries::kApproximately ? "approximately"
+                                                               : "NOT CARRIED";
+    text += fmt::format("  {}: {}{}\n", how, Join(features), rows[i].note.empty() ? "" : " (" + rows[i].note + ")");
+  }
+  return text;
+}
+
+std::vector<std::string> Header(const FittedBrdf& fit, const ExportOptions& options, const ExportResult& result) {
+  const Material& material = fit.material();
+  std::string fit_error;
+  for (const MetricError& error : material.errors) fit_error += fmt::format("  {} {:.3g}", error.metric, error.rms);
+  std::vector<std::string> lines = {
+      fmt::format("{}: exported by lobefit {} from {}", options.name, Version(), options.material_file),
+      fmt::format("measurement: {}", material.source.file),
+      fmt::format("error of the fit (root mean square):{}", fit_error), fmt::format("command: {}", options.command)};
+  if (result.numbers == "copied" || result.numbers == "refitted") {
+    lines.push_back(fmt::format("numbers {}; error of this material against the fit: {}", result.numbers,
+                                ErrorWords(result.error)));
+  }
+  for (const Carried& row : result.carries) {
+    if (row.how == Carries::kExactly) continue;
+    lines.push_back(
+        fmt::format("{}: {}{}", row.feature, row.how == Carries::kNot ? "not carried, " : "approximately, ", row.note));
+  }
+  // A comment ends with its line.
+  for (std::string& line : lines) {
+    for (char& c : line) c = static_cast<unsigned char>(c) < 32 ? ' ' : c;
+  }
+  return lines;
+}
+
+ExportResult ExportTo(const Target& target, const FittedBrdf& fit, const ErrorMeter& meter,
+                      const ExportOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  ExportResult result;
+  result.target = &target;
+  result.carries = target.carries(fit);
+  std::optional<FittedBrdf> refitted;
+  if (target.evaluate != nullptr) {
+    result.numbers = "copied";
+    result.error = meter.Compare(target.evaluate(fit));
+    if (options.numbers != Numbers::kCopied) refitted = Refit(fit, target.own_model(fit), meter, options.threads);
+    if (refitted) {
+      const ExportError error = meter.Compare(target.evaluate(*refitted));
+      if (options.numbers == Numbers::kRefitted || IsBetter(error, result.error)) {
+        result.other = result.error;
+        result.error = error;
+        result.numbers = "refitted";
+      } else {
+        result.other = error;
+        refitted.reset();
+      }
+    }
+  }
+  const FittedBrdf& source = refitted ? *refitted : fit;
+  const WriteContext context = {options.folder, options.name, Header(fit, options, result), options.threads};
+  const WrittenFiles written = target.write(source, context);
+  if (target.evaluate == nullptr) result.numbers = written.exact ? "exact" : "tabulated";
+  // What counts is the file: it is read back.
+  result.error = meter.Compare(written.brdf);
+  result.files = written.files;
+  result.notes = written.notes;
+  for (const std::filesystem::path& file : result.files) result.bytes += std::filesystem::file_size(file);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace
+
+std::vector<ExportResult> ExportMaterial(const Material& material, const ExportOptions& options) {
+  const FittedBrdf fit(material);
+  CheckRefusals(fit, options);
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (error) {
+    throw OutputError(fmt::format("{}: the folder cannot be made ({}); choose another with --out",
+                                  options.folder.string(), error.message()));
+  }
+  const ErrorMeter meter(fit);
+  std::vector<ExportResult> results;
+  Progress progress("exporting", options.targets.size());
+  for (const Target* target : options.targets) {
+    results.push_back(ExportTo(*target, fit, meter, options));
+    progress.Advance();
+  }
+  WriteFileAtomically(options.folder / (options.name + ".export.json"), ExportJson(material, options, results));
+  return results;
+}
+
+std::string ExportSummary(const std::vector<ExportResult>& results) {
+  std::string text = fmt::format("{:<14} {:<10} {:>9} {:>9} {:>9} {:>9}   {}\n", "target", "numbers", "median", "90 %",
+                                 "maximum", "albedo", "files");
+  for (const ExportResult& result : results) {
+    std::vector<std::string> names;
+    for (const std::filesystem::path& file : result.files) names.push_back(file.string());
+    const auto percent = [](double fraction) { return fmt::format("{:.2g} %", 100 * fraction); };
+    text += fmt::format("{:<14} {:<10} {:>9} {:>9} {:>9} {:>9}   {}\n", result.target->name, result.numbers,
+                        percent(result.error.median), percent(result.error.percentile_90),
+                        percent(result.error.maximum), percent(result.error.albedo), Join(names));
+  }
+  text += "Errors: f_r of the exported model against the fit's at the same directions; albedo: largest difference.\n";
+  for (const ExportResult& result : results) {
+    text += fmt::format("{}:\n{}", result.target->name, CarriedLines(result.carries));
+    if (result.other) {
+      text += fmt::format("  numbers {} because that is nearer: the {} ones have median {:.2g} %, albedo {:.2g} %\n",
+                          result.numbers, result.numbers == "copied" ? "refitted" : "copied",
+                          100 * result.other->median, 100 * result.other->albedo);
+    }
+    for (const std::string& note : result.notes) text += fmt::format("  {}\n", note);
+  }
+  return text;
+}
+
+}  // namespace lobefit

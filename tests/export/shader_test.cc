@@ -1,0 +1,267 @@
+// The shader texts: compiled by glslangValidator, and evaluated in a browser's WebGL 2 against the fit. Skipped where
+// the tool is not installed.
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+
+#include "tests/export/materials.h"
+#include "tests/support/shapes.h"
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lobefit/base/file.h"
+#include "lobefit/base/text.h"
+#include "lobefit/export/shader_targets.h"
+
+namespace lobefit {
+namespace {
+
+using testing::HasSubstr;
+
+bool Installed(const char* program) {
+  return std::system(fmt::format("command -v {} >/dev/null 2>&1", program).c_str()) == 0;
+}
+
+std::string OutputOf(const std::string& command) {
+  std::string text;
+  std::FILE* pipe = popen(command.c_str(), "r");
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text.push_back(static_cast<char>(c));
+  pclose(pipe);
+  return text;
+}
+
+struct Case {
+  const char* name;
+  SyntheticCase (*material)();
+};
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+SyntheticCase Spectral() {
+  SyntheticCase synthetic = OneLobe(Ndf::kEllipsoid, 0.3, 0.1, 4, 5, 10, {0.5, 0.6, 0.7, 0.8}, {0.1, 0.1, 0.1, 0.1});
+  synthetic.channels = {"450nm", "500nm", "550nm", "600nm"};
+  return synthetic;
+}
+SyntheticCase Narrow() {
+  SyntheticCase synthetic = OneLobe(Ndf::kEllipsoid, 0.02, 0.005, 3, -4, 70);
+  synthetic.model.lobes[0].masking = Masking::kSmithHeight;
+  return synthetic;
+}
+
+// The terms that the other cases do not have: Beckmann, every masking, exact Fresnel terms.
+SyntheticCase Beckmann(Masking masking, Fresnel fresnel) {
+  SyntheticCase synthetic = OneLobe(Ndf::kBeckmannAnisotropic, 0.4, 0.15, 0, 0, 20);
+  synthetic.model.lobes[0].masking = masking;
+  synthetic.model.lobes[0].fresnel = fresnel;
+  if (fresnel == Fresnel::kConductor) {
+    synthetic.values[5] = {0.2, 0.9, 1.4};
+    synthetic.values.insert(synthetic.values.begin() + 6, {3.9, 2.4, 0.5});
+  } else if (fresnel == Fresnel::kDielectric) {
+    synthetic.values[5] = {1.5, 1.33, 2};
+  }
+  return synthetic;
+}
+SyntheticCase BeckmannMetal() { return Beckmann(Masking::kSmithHeightDirection, Fresnel::kConductor); }
+SyntheticCase BeckmannGlass() { return Beckmann(Masking::kVCavity, Fresnel::kDielectric); }
+SyntheticCase BeckmannKelemen() { return Beckmann(Masking::kKelemen, Fresnel::kNone); }
+SyntheticCase GgxSchlickSmith() {
+  SyntheticCase synthetic = test::Turned();
+  synthetic.model.lobes[0].masking = Masking::kSchlickSmith;
+  return synthetic;
+}
+SyntheticCase GgxImplicit() {
+  SyntheticCase synthetic = test::Turned();
+  synthetic.model.lobes[0].masking = Masking::kImplicit;
+  return synthetic;
+}
+
+class Shaders : public testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("shader_") + GetParam().name);
+    std::filesystem::create_directories(folder_);
+    Material material = test::MaterialOf(GetParam().material());
+    if (material.channels.size() == 4) material.wavelengths_nm = {450, 500, 550, 600};
+    fit_ = std::make_unique<FittedBrdf>(material);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string Validate(const std::string& text) const {
+    WriteFileAtomically(folder_ / "shader.frag", text);
+    return OutputOf("glslangValidator '" + (folder_ / "shader.frag").string() + "' 2>&1");
+  }
+
+  std::string Main() const {
+    const std::size_t channels = fit_->material().channels.size();
+    return fit_->IsRgbOrGrey() ? "vec3 f_of(vec3 wi, vec3 wo) { return lobefit_f_r(wi, wo); }\n"
+                               : fmt::format(
+                                     "vec3 f_of(vec3 wi, vec3 wo) {{ float f[{}]; lobefit_f_r(wi, wo, f); return "
+                                     "vec3(f[0], f[1], f[{}]); }}\n",
+                                     channels, channels - 1);
+  }
+
+  std::filesystem::path folder_;
+  std::unique_ptr<FittedBrdf> fit_;
+};
+
+TEST_P(Shaders, CompileForGlAndForWebGl) {
+  if (!Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
+  const std::string text = GlslText(*fit_, {"a comment"}) + Main();
+  const std::string main = "in vec3 a; in vec3 b; out vec4 c;\nvoid main() { c = vec4(f_of(a, b), 1.0); }\n";
+  for (const char* version : {"#version 300 es\nprecision highp float;\n", "#version 330\n", "#version 410\n"}) {
+    EXPECT_THAT(Validate(version + text + main), testing::Not(HasSubstr("ERROR"))) << version;
+  }
+  // The test can fail.
+  EXPECT_THAT(Validate("#version 330\n" + text + "void main() { undefined(); }\n"), HasSubstr("ERROR"));
+}
+
+TEST_P(Shaders, BrdfExplorerFileCompiles) {
+  if (!Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
+  if (!fit_->IsRgbOrGrey()) return;
+  const std::string file = BrdfExplorerText(*fit_, {"a comment"});
+  // As the program reads it: lines that begin with # go first, the first word is "analytic".
+  std::string kept, uniforms, shader;
+  LineReader lines(file);
+  std::string_view line;
+  bool in_parameters = false, in_shader = false;
+  while (lines.Next(&line)) {
+    if (Trim(line).starts_with("#")) continue;
+    kept += std::string(line) + "\n";
+    if (line == "::end parameters") in_parameters = false;
+    if (line == "::end shader") in_shader = false;
+    if (in_parameters) {
+      const std::vector<std::string_view> words = SplitBlanks(line);
+      ASSERT_EQ(words.size(), 5U) << line;
+      uniforms += fmt::format("uniform {} {};\n", words[0] == "color" ? "vec3" : "float", words[1]);
+      for (std::size_t k = 2; k < 5; ++k) EXPECT_TRUE(ParseDouble(words[k]).has_value()) << line;
+    }
+    if (in_shader) shader += std::string(line) + "\n";
+    if (line == "::begin parameters") in_parameters = true;
+    if (line == "::begin shader") in_shader = true;
+  }
+  EXPECT_TRUE(kept.starts_with("analytic\n")) << kept.substr(0, 20);
+  EXPECT_THAT(Validate("#version 410\n" + uniforms + shader +
+                       "in vec3 a; in vec3 b; out vec4 c;\nvoid main() { c = vec4(BRDF(a, b, vec3(0.0, 0.0, 1.0), "
+                       "vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0)), 1.0); }\n"),
+              testing::Not(HasSubstr("ERROR")));
+}
+
+// 64 pairs of directions, for each text one pixel a pair in floating point.
+TEST_P(Shaders, GiveTheFitsValuesInABrowser) {
+  if (!Installed("chromium")) GTEST_SKIP() << "Chromium is not installed";
+  constexpr int kPairs = 64;
+  std::vector<Vec3> wi, wo;
+  ShapeGenerator directions(11);
+  while (wi.size() < kPairs) {
+    const Vec3 i = directions.Upper(), o = wi.size() % 4 == 0 ? Vec3{-i.x, -i.y, i.z} : directions.Upper();
+    if (i.z < 0.02 || o.z < 0.02) continue;
+    wi.push_back(i);
+    wo.push_back(o);
+  }
+  std::string data;
+  for (int k = 0; k < kPairs; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    data += fmt::format("{},{},{},0,{},{},{},0,", wi[at].x, wi[at].y, wi[at].z, wo[at].x, wo[at].y, wo[at].z);
+  }
+  std::string explorer_body, explorer_uniforms;
+  if (fit_->IsRgbOrGrey()) {
+    // The sliders at their defaults, as constants.
+    const std::string text = BrdfExplorerText(*fit_, {});
+    LineReader again(text);
+    std::string_view line;
+    bool in_parameters = false, in_shader = false;
+    while (again.Next(&line)) {
+      if (line.starts_with("::end")) in_parameters = in_shader = false;
+      if (in_parameters) {
+        const std::vector<std::string_view> w = SplitBlanks(line);
+        explorer_uniforms += w[0] == "color"
+                                 ? fmt::format("const vec3 {} = vec3({}, {}, {});\n", w[1], w[2], w[3], w[4])
+                                 : fmt::format("const float {} = {};\n", w[1], w[4]);
+      }
+      if (in_shader) explorer_body += std::string(line) + "\n";
+      if (line == "::begin parameters") in_parameters = true;
+      if (line == "::begin shader") in_shader = true;
+    }
+    explorer_body +=
+        "vec3 f_of(vec3 wi, vec3 wo) { return BRDF(wi, wo, vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, "
+        "0.0)); }\n";
+  }
+  const std::string head =
+      "#version 300 es\nprecision highp float;\nprecision highp sampler2D;\nuniform sampler2D pairs;\nout vec4 c;\n";
+  const std::string main =
+      "void main() { int k = int(gl_FragCoord.x); c = vec4(f_of(texelFetch(pairs, ivec2(2 * k, 0), 0).xyz, "
+      "texelFetch(pairs, ivec2(2 * k + 1, 0), 0).xyz), 1.0); }\n";
+  std::vector<std::string> texts = {head + GlslText(*fit_, {}) + Main() + main};
+  if (!explorer_body.empty()) texts.push_back(head + explorer_uniforms + explorer_body + main);
+  std::string page = "<pre id=\"result\"></pre>";
+  for (const std::string& text : texts) page += "<script type=\"text/plain\" class=\"shader\">" + text + "</script>";
+  page += "<script>const pairs = new Float32Array([" + data + "]);\n";
+  page += R"(const gl = document.createElement('canvas').getContext('webgl2');
+gl.getExtension('EXT_color_buffer_float');
+const texture = (w, data) => { const t = gl.createTexture(); gl.bindTexture(gl.TEXTURE_2D, t);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, w, 1, 0, gl.RGBA, gl.FLOAT, data);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST); gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST); return t; };
+const n = pairs.length / 8, target = texture(n, null);
+gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
+texture(2 * n, pairs); gl.viewport(0, 0, n, 1);
+let out = '';
+for (const element of document.querySelectorAll('.shader')) {
+  const p = gl.createProgram();
+  for (const [type, source] of [[gl.VERTEX_SHADER, '#version 300 es\nvoid main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }'], [gl.FRAGMENT_SHADER, element.textContent]]) {
+    const s = gl.createShader(type); gl.shaderSource(s, source); gl.compileShader(s); out += gl.getShaderInfoLog(s) || ''; gl.attachShader(p, s); }
+  gl.linkProgram(p); gl.useProgram(p); gl.drawArrays(gl.TRIANGLES, 0, 3);
+  const pixels = new Float32Array(4 * n); gl.readPixels(0, 0, n, 1, gl.RGBA, gl.FLOAT, pixels);
+  out += Array.from(pixels).join(' ') + '\n'; }
+document.getElementById('result').textContent = out;
+</script>)";
+  WriteFileAtomically(folder_ / "page.html", page);
+  const std::string dom = OutputOf(
+      "timeout 300 chromium --headless=new --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader "
+      "--disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync "
+      "--virtual-time-budget=10000 --user-data-dir='" +
+      (folder_ / "profile").string() + "' --dump-dom 'file://" + (folder_ / "page.html").string() + "' 2>/dev/null");
+  const std::size_t begin = dom.find("<pre id=\"result\">") + 17;
+  const std::string result = dom.substr(begin, dom.find("</pre>", begin) - begin);
+  LineReader rows(result);
+  std::string_view row;
+  const std::size_t channels = fit_->material().channels.size();
+  for (std::size_t text = 0; text < texts.size(); ++text) {
+    ASSERT_TRUE(rows.Next(&row)) << dom.substr(0, 2000);
+    const std::vector<std::string_view> values = SplitBlanks(row);
+    ASSERT_EQ(values.size(), 4U * kPairs) << row.substr(0, 300);
+    for (std::size_t k = 0; k < kPairs; ++k) {
+      std::vector<double> wanted(channels);
+      fit_->function()(wi[k], wo[k], wanted.data());
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double expected = wanted[channels == 1 ? 0 : c == 2 ? channels - 1 : c];
+        const double found = ParseDouble(values[4 * k + c]).value_or(-1);
+        // Single precision: a direction has 6e-8, which a lobe of width alpha sees 1/alpha times as large.
+        const double tolerance = 1e-4 + 1e-6 / fit_->lobes()[0].widths.alpha_2;
+        EXPECT_NEAR(found / expected, 1, tolerance) << "text " << text << ", pair " << k << ", channel " << c;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Materials, Shaders,
+                         testing::Values(Case{"tilted", test::Tilted}, Case{"two_lobes", test::TwoLobes},
+                                         Case{"spectral", Spectral}, Case{"narrow", Narrow},
+                                         Case{"beckmann_metal", BeckmannMetal}, Case{"beckmann_glass", BeckmannGlass},
+                                         Case{"beckmann_kelemen", BeckmannKelemen},
+                                         Case{"schlick_smith", GgxSchlickSmith}, Case{"implicit", GgxImplicit}),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
+
+TEST(OslText, IsTheSameTextWithItsOwnNames) {
+  const FittedBrdf fit(test::MaterialOf(test::Tilted()));
+  const std::string text = OslText(fit, "2 red-metal", {"a comment"});
+  EXPECT_TRUE(text.starts_with("// a comment\n"));
+  EXPECT_EQ(text.find("vec3"), std::string::npos);
+  EXPECT_THAT(text, HasSubstr("vector lobefit_f_r(vector wi, vector wo) {"));
+  EXPECT_THAT(text, HasSubstr("shader m_2_red_metal("));
+  EXPECT_THAT(text, HasSubstr("output color f_r = 0"));
+}
+
+}  // namespace
+}  // namespace lobefit

@@ -1,0 +1,269 @@
+// What the importers evaluate, against the models of the renderers written here anew from their documents: numbers are
+// taken from the exported text by patterns, formulas by other routes (complex Fresnel amplitudes, masking by the
+// tangent of the effective angle).
+#include <array>
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <functional>
+#include <regex>
+
+#include "tests/export/materials.h"
+#include "tests/support/shapes.h"
+#include <gtest/gtest.h>
+
+#include "lobefit/base/file.h"
+#include "lobefit/export/export.h"
+#include "lobefit/export/import.h"
+#include "lobefit/export/normal_map.h"
+#include "lobefit/export/roughness.h"
+
+namespace lobefit {
+namespace {
+
+using Rgb3 = std::array<double, 3>;
+
+// Every number in the first match's group of `pattern`.
+std::vector<double> Find(const std::string& text, const std::string& pattern, int occurrence = 0) {
+  std::vector<double> numbers;
+  const std::regex wanted(pattern);
+  auto match = std::sregex_iterator(text.begin(), text.end(), wanted);
+  std::advance(match, occurrence);
+  const std::string group = (*match)[1].str();
+  const std::regex number("[-+]?[0-9.]+(e[-+]?[0-9]+)?");
+  for (auto at = std::sregex_iterator(group.begin(), group.end(), number); at != std::sregex_iterator(); ++at) {
+    numbers.push_back(std::stod(at->str()));
+  }
+  return numbers;
+}
+
+double SchlickFresnel(double f0, double c) { return f0 + (1 - f0) * std::pow(1 - c, 5); }
+
+// Fresnel's equations by complex amplitudes.
+double ComplexFresnel(double eta, double k, double c) {
+  const std::complex<double> n(eta, k), sin_t = std::sqrt(1 - c * c) / n, cos_t = std::sqrt(1.0 - sin_t * sin_t);
+  const std::complex<double> s = (c - n * cos_t) / (c + n * cos_t), p = (n * c - cos_t) / (n * c + cos_t);
+  return (std::norm(s) + std::norm(p)) / 2;
+}
+
+struct Frame {
+  Vec3 t, b, n;
+  Vec3 Local(const Vec3& w) const { return {Dot(w, t), Dot(w, b), Dot(w, n)}; }
+};
+Frame TurnedFrame(double angle, const Vec3& n) {
+  Vec3 t = {std::cos(angle), std::sin(angle), 0};
+  t = Normalized(t - Dot(t, n) * n);
+  return {t, Cross(n, t), n};
+}
+
+// Trowbridge-Reitz by angles: tan^2 theta (cos^2 phi / ax^2 + sin^2 phi / ay^2).
+double TrowbridgeReitz(const Vec3& h, double ax, double ay) {
+  const double tan2 = (1 - h.z * h.z) / (h.z * h.z), r2 = h.x * h.x + h.y * h.y;
+  const double e = r2 > 0 ? tan2 * (h.x * h.x / r2 / (ax * ax) + h.y * h.y / r2 / (ay * ay)) : 0;
+  return 1 / (kPi * ax * ay * std::pow(h.z, 4) * (1 + e) * (1 + e));
+}
+double Lambda(const Vec3& w, double ax, double ay) {
+  const double tan2 = (1 - w.z * w.z) / (w.z * w.z), r2 = w.x * w.x + w.y * w.y;
+  const double alpha2 = r2 > 0 ? (ax * ax * w.x * w.x + ay * ay * w.y * w.y) / r2 : 0;
+  return (std::sqrt(1 + alpha2 * tan2) - 1) / 2;
+}
+
+// The lobe's factor of everything but Fresnel, seen from the surface below a shading normal.
+double LobeFactor(const Frame& frame, double ax, double ay, const Vec3& wi, const Vec3& wo,
+                  const std::string& masking) {
+  const Vec3 i = frame.Local(wi), o = frame.Local(wo);
+  if (i.z <= 0 || o.z <= 0) return 0;
+  const Vec3 h = Normalized(i + o);
+  const double mean = std::sqrt(ax * ay);
+  double g = 1 / ((1 + Lambda(i, ax, ay)) * (1 + Lambda(o, ax, ay)));
+  if (masking == "correlated") g = 1 / (1 + Lambda(i, ax, ay) + Lambda(o, ax, ay));
+  if (masking == "mean") g = 1 / (1 + Lambda(i, mean, mean) + Lambda(o, mean, mean));
+  return TrowbridgeReitz(h, ax, ay) * g / (4 * i.z * o.z) * (i.z / wi.z);
+}
+
+class TargetModel : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("target_model_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  // Exports the copied numbers and returns the text of the file.
+  std::string Export(const SyntheticCase& synthetic, const char* target, const char* file) {
+    ExportOptions options;
+    options.targets = {&FindTarget(target)};
+    options.folder = folder_;
+    options.name = "sample";
+    options.numbers = Numbers::kCopied;
+    ExportMaterial(test::MaterialOf(synthetic), options);
+    path_ = folder_ / file;
+    return std::string(MappedFile(path_).bytes());
+  }
+
+  void ExpectSame(const std::function<Rgb3(const Vec3&, const Vec3&)>& expected, double tolerance, double least_cos = 0,
+                  const Vec3& axis = {0, 0, 1}) const {
+    const BrdfFunction imported = ImportMaterial(path_).brdf;
+    ShapeGenerator directions(7);
+    for (int k = 0; k < 200; ++k) {
+      const Vec3 wi = directions.Upper(), wo = k % 5 == 0 ? Vec3{-wi.x, -wi.y, wi.z} : directions.Upper();
+      if (Dot(wo, axis) < least_cos || Dot(wi, axis) < least_cos) continue;
+      Rgb3 found = {};
+      imported(wi, wo, found.data());
+      const Rgb3 wanted = expected(wi, wo);
+      for (std::size_t c = 0; c < 3; ++c) {
+        ASSERT_NEAR(found[c], wanted[c], tolerance * (wanted[c] + 1e-3)) << "channel " << c << ", pair " << k;
+      }
+    }
+  }
+
+  std::filesystem::path folder_, path_;
+};
+
+TEST_F(TargetModel, Pbrt) {
+  const std::string text = Export(test::Tilted(), "pbrt", "sample.pbrt");
+  const std::vector<double> r = Find(text, "\"rgb reflectance\" \\[([^\\]]*)\\]");
+  const std::vector<double> rho = Find(text, "\"rgb reflectance\" \\[([^\\]]*)\\]", 1);
+  const double ax = Find(text, "\"float uroughness\" (\\S+)")[0], ay = Find(text, "\"float vroughness\" (\\S+)")[0];
+  const double amount = Find(text, "\"float amount\" (\\S+)")[0];
+  EXPECT_NE(text.find("\"bool remaproughness\" false"), std::string::npos);
+  const double turn = DegreesToRadians(Find(text, "uv-rotation-deg: (\\S+)")[0]);
+  const std::filesystem::path map = folder_ / "sample_normal1.png";
+  const Vec3 m = NormalOfPng(MappedFile(map).bytes(), 1, map);
+  const Vec3 n = {std::cos(turn) * m.x - std::sin(turn) * m.y, std::sin(turn) * m.x + std::cos(turn) * m.y, m.z};
+  ExpectSame(
+      [&](const Vec3& wi, const Vec3& wo) {
+        const double c = Dot(wi, Normalized(wi + wo));
+        const double lobe = LobeFactor(TurnedFrame(turn, n), ax, ay, wi, wo, "correlated");
+        Rgb3 f = {};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double index_k = 2 * std::sqrt(r[k]) / std::sqrt(1 - r[k]);
+          f[k] = (1 - amount) * lobe * ComplexFresnel(1, index_k, c) + amount * rho[k] / kPi;
+        }
+        return f;
+      },
+      1e-8);
+}
+
+TEST_F(TargetModel, Mitsuba) {
+  const std::string text = Export(test::Turned(), "mitsuba", "sample.mitsuba.xml");
+  const auto value = [&](const std::string& name) { return Find(text, "name=\"" + name + "\" value=\"([^\"]*)\""); };
+  EXPECT_NE(text.find("<string name=\"distribution\" value=\"ggx\"/>"), std::string::npos);
+  const std::vector<double> eta = value("eta"), k = value("k"), rho = value("reflectance");
+  const double ax = value("alpha_u")[0], ay = value("alpha_v")[0], weight = value("weight")[0];
+  const double turn = DegreesToRadians(Find(text, "uv-rotation-deg: (\\S+)")[0]);
+  ExpectSame(
+      [&](const Vec3& wi, const Vec3& wo) {
+        const double c = Dot(wi, Normalized(wi + wo));
+        const double lobe = LobeFactor(TurnedFrame(turn, {0, 0, 1}), ax, ay, wi, wo, "separable");
+        Rgb3 f = {};
+        for (std::size_t j = 0; j < 3; ++j) {
+          f[j] = (1 - weight) * lobe * ComplexFresnel(eta[j], k[j], c) + weight * rho[j] / kPi;
+        }
+        return f;
+      },
+      1e-8);
+}
+
+// Albedo of an isotropic lobe of F = 1 by a plain product rule over the micro normals.
+double LobeAlbedo(double alpha, double mu) {
+  const Vec3 o = {std::sqrt(1 - mu * mu), 0, mu};
+  double sum = 0;
+  constexpr int kSide = 400;
+  for (int a = 0; a < kSide; ++a) {
+    for (int b = 0; b < kSide; ++b) {
+      const double u = (a + 0.5) / kSide, phi = 2 * kPi * (b + 0.5) / kSide, tan = alpha * std::sqrt(u / (1 - u));
+      const Vec3 h = Normalized(Vec3{tan * std::cos(phi), tan * std::sin(phi), 1});
+      const double oh = Dot(o, h);
+      const Vec3 i = 2 * oh * h - o;
+      if (oh <= 0 || i.z <= 0) continue;
+      // dwi = 4 oh dh, and u is uniform with density D cos_h.
+      sum += 4 * oh / (h.z * 4 * mu) / (1 + Lambda(i, alpha, alpha) + Lambda(o, alpha, alpha));
+    }
+  }
+  return sum / (kSide * kSide);
+}
+
+TEST_F(TargetModel, MaterialX) {
+  const std::string text = Export(test::Turned(), "materialx", "sample.mtlx");
+  const auto value = [&](const std::string& name) {
+    return Find(text, "name=\"" + name + "\" type=\"[a-z0-9]*\" value=\"([^\"]*)\"");
+  };
+  const std::vector<double> f0 = value("color0"), alpha = value("roughness"), rho = value("color");
+  EXPECT_EQ(value("color90"), (std::vector<double>{1, 1, 1}));
+  // The tangent as nodes: cos T + sin B.
+  const double cos = Find(text, "_tangent_0\"[^>]*>\\s*<input[^>]*>\\s*<input name=\"in2\"[^>]*value=\"([^\"]*)\"")[0];
+  const double sin = Find(text, "_tangent_1\"[^>]*>\\s*<input[^>]*>\\s*<input name=\"in2\"[^>]*value=\"([^\"]*)\"")[0];
+  EXPECT_NEAR(cos * cos + sin * sin, 1, 1e-8);
+  const double mean = std::sqrt(alpha[0] * alpha[1]);
+  ExpectSame(
+      [&](const Vec3& wi, const Vec3& wo) {
+        const double c = Dot(wi, Normalized(wi + wo));
+        const double lobe =
+            LobeFactor(TurnedFrame(std::atan2(sin, cos), {0, 0, 1}), alpha[0], alpha[1], wi, wo, "mean");
+        const double e = LobeAlbedo(mean, wo.z);
+        Rgb3 f = {};
+        for (std::size_t j = 0; j < 3; ++j) {
+          const double fresnel = SchlickFresnel(f0[j], c);
+          f[j] = lobe * fresnel * (1 + fresnel * (1 - e) / e) + rho[j] / kPi;
+        }
+        return f;
+      },
+      // The albedo's table.
+      3e-3, 0.1);
+}
+
+TEST_F(TargetModel, Gltf) {
+  const std::string text = Export(test::Tilted(), "gltf", "sample.gltf");
+  const auto value = [&](const std::string& name) { return Find(text, "\"" + name + "\": (\\[[^\\]]*\\]|[-0-9.e]+)"); };
+  const std::vector<double> base = value("baseColorFactor");
+  const double metal = value("metallicFactor")[0], r = value("roughnessFactor")[0], s = value("anisotropyStrength")[0];
+  const double turn = value("anisotropyRotation")[0];
+  const double ay = r * r, ax = ay + (1 - ay) * s * s;
+  const Vec3 n = Normalized(FittedBrdf(test::MaterialOf(test::Tilted())).lobes()[0].axis);
+  ExpectSame(
+      [&](const Vec3& wi, const Vec3& wo) {
+        const double c = Dot(wi, Normalized(wi + wo));
+        const Frame frame = TurnedFrame(turn, n);
+        const double lobe = LobeFactor(frame, ax, ay, wi, wo, "correlated");
+        const double dielectric = SchlickFresnel(0.04, c);
+        const double below = Dot(n, wi) > 0 && Dot(n, wo) > 0 ? Dot(n, wi) / wi.z : 0;
+        Rgb3 f = {};
+        for (std::size_t k = 0; k < 3; ++k) {
+          f[k] = metal * lobe * SchlickFresnel(base[k], c) +
+                 (1 - metal) * (lobe * dielectric + (1 - dielectric) * base[k] / kPi * below);
+        }
+        return f;
+      },
+      // The normal map's 8 bits: 0.01 degrees, which count near the tilted horizon.
+      5e-3, 0.1, n);
+}
+
+TEST_F(TargetModel, OpenPbr) {
+  const std::string text = Export(test::Turned(), "openpbr", "sample.openpbr.mtlx");
+  const auto value = [&](const std::string& name) {
+    return Find(text, "name=\"" + name + "\" type=\"[a-z0-9]*\" value=\"([^\"]*)\"");
+  };
+  const Widths widths = OpenPbrWidths({value("specular_roughness")[0], value("specular_roughness_anisotropy")[0]});
+  EXPECT_NEAR(widths.alpha_1, 0.35, 1e-8);
+  EXPECT_NEAR(widths.alpha_2, 0.11, 1e-8);
+  const double metal = value("base_metalness")[0];
+  const std::vector<double> base = value("base_color");
+  EXPECT_GT(metal, 0.9);
+  // The reflectance of metal and dielectric base together is the fit's.
+  const double mean = std::sqrt(widths.alpha_1 * widths.alpha_2), e = LobeAlbedo(mean, 1);
+  const Vec3 up = {0, 0, 1};
+  Rgb3 found = {};
+  ImportMaterial(path_).brdf(up, up, found.data());
+  const double lobe = LobeFactor(TurnedFrame(0, up), widths.alpha_1, widths.alpha_2, up, up, "mean");
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double lost = (1 - e) / e, dielectric = 0.04;
+    const double specular =
+        metal * lobe * base[c] * (1 + base[c] * lost) + (1 - metal) * lobe * dielectric * (1 + dielectric * lost);
+    const double diffuse = (1 - metal) * base[c] * (1 - dielectric * e * (1 + dielectric * lost)) / kPi;
+    EXPECT_NEAR(found[c] / (specular + diffuse), 1, 1e-3) << c;
+  }
+}
+
+}  // namespace
+}  // namespace lobefit

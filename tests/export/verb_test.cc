@@ -1,0 +1,86 @@
+// lobefit export as a user calls it.
+#include "tests/support/run_program.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace lobefit {
+namespace {
+
+using testing::HasSubstr;
+
+class ExportVerb : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/brushed_metal.csv --no-report").exit_code, 0);
+  }
+};
+
+TEST_F(ExportVerb, WritesFilesTableAndRecord) {
+  const ProgramResult run = Shell("lobefit export brushed_metal.material.json --to gltf,pbrt,glsl --out here/out");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const char* words :
+       {"gltf", "here/out/brushed_metal.gltf", "approximately: tilt", "exactly: shape", "texture coordinates"}) {
+    EXPECT_THAT(run.out, HasSubstr(words));
+  }
+  const nlohmann::json record = nlohmann::json::parse(ReadWholeFile(folder_ / "here/out/brushed_metal.export.json"));
+  ASSERT_EQ(record["targets"].size(), 3U);
+  EXPECT_EQ(record["targets"][0]["target"], "gltf");
+  EXPECT_GT(record["targets"][0]["relative_error"]["median"], 0);
+  EXPECT_THAT(ReadWholeFile(folder_ / "here/out/brushed_metal.pbrt"), HasSubstr("# command: lobefit export"));
+  // A second export keeps the rows of the first.
+  ASSERT_EQ(Shell("lobefit export brushed_metal.material.json --to osl,glsl --out here/out").exit_code, 0);
+  const nlohmann::json second = nlohmann::json::parse(ReadWholeFile(folder_ / "here/out/brushed_metal.export.json"));
+  EXPECT_EQ(second["targets"].size(), 4U);
+}
+
+TEST_F(ExportVerb, JsonCopyAndRefit) {
+  const ProgramResult copy = Shell("lobefit export brushed_metal.material.json --to gltf --copy --json --name part");
+  ASSERT_EQ(copy.exit_code, 0) << copy.err;
+  EXPECT_EQ(nlohmann::json::parse(copy.out)["targets"][0]["numbers"], "copied");
+  const ProgramResult refit = Shell("lobefit export brushed_metal.material.json --to gltf --refit --json --name part");
+  ASSERT_EQ(refit.exit_code, 0) << refit.err;
+  const nlohmann::json row = nlohmann::json::parse(refit.out)["targets"][0];
+  EXPECT_EQ(row["numbers"], "refitted");
+  EXPECT_TRUE(row.contains("relative_error_of_the_other_numbers"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "part.gltf"));
+}
+
+TEST_F(ExportVerb, BadUse) {
+  const struct {
+    const char* arguments;
+    int exit_code;
+    const char* message;
+  } cases[] = {
+      {"", 2, "--to TARGET[,TARGET] are needed"},
+      {"brushed_metal.material.json", 2, "lobefit export --list"},
+      {"brushed_metal.material.json --to mitsubah", 2, "did you mean 'mitsuba'?"},
+      {"brushed_metal.material.json --to merl,gltf", 3, "merl cannot hold this material"},
+      {"nothing.material.json --to gltf", 3, "nothing.material.json"},
+      {"broken.json --to gltf", 3, "broken.json"},
+      {"brushed_metal.material.json --to gltf --copy --refit", 2, "excludes"},
+      {"brushed_metal.material.json --to gltf --name a/b", 2, "is a path; the folder is given by --out"},
+      {"brushed_metal.material.json --to gltf --out broken.json/x", 3, "the folder cannot be made"},
+  };
+  ASSERT_EQ(Shell("echo '{\"model\": 3' > broken.json").exit_code, 0);
+  for (const auto& bad : cases) {
+    const ProgramResult run = Shell(std::string("lobefit export ") + bad.arguments);
+    EXPECT_EQ(run.exit_code, bad.exit_code) << bad.arguments << "\n" << run.err;
+    EXPECT_THAT(run.err, HasSubstr(bad.message)) << bad.arguments;
+  }
+  EXPECT_EQ(Files(), (std::vector<std::string>{"broken.json", "brushed_metal.material.json"}))
+      << "nothing is left behind";
+}
+
+TEST_F(ExportVerb, ListNamesEveryTarget) {
+  const ProgramResult run = Shell("lobefit export --list");
+  EXPECT_EQ(run.exit_code, 0);
+  for (const char* name : {"pbrt", "mitsuba", "materialx", "openpbr", "gltf", "osl", "glsl", "brdf-explorer", "rgl",
+                           "merl", "bsdf-xml", "csv", "json"}) {
+    EXPECT_THAT(run.out, HasSubstr(name));
+  }
+}
+
+}  // namespace
+}  // namespace lobefit
