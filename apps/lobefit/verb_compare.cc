@@ -13,6 +13,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/export/import.h"
 #include "lobefit/fit/compare.h"
 #include "lobefit/material/json.h"
 
@@ -70,6 +71,19 @@ std::vector<Recipe> ChooseRecipes(const CompareVerb& verb, const Measurement& me
   return recipes;
 }
 
+// A document of this program, or a material of a renderer as that evaluates it.
+GivenMaterial LoadGiven(const std::string& path) {
+  const ImportedMaterial imported = ImportMaterial(path);
+  if (imported.format == "json") return {path, ReadMaterial(path)};
+  GivenMaterial given = {path, {}, imported.brdf};
+  given.material.model.diffuse = Diffuse::kNone;
+  given.material.channels = imported.channels.names;
+  given.material.wavelengths_nm = imported.channels.wavelengths_nm;
+  given.material.source.format = imported.format;
+  given.material.termination = {true, true, "not fitted"};
+  return given;
+}
+
 int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   std::error_code error;
   const std::filesystem::path folder = verb.out;
@@ -80,7 +94,7 @@ int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
 
   const auto start = std::chrono::steady_clock::now();
   std::vector<GivenMaterial> given;
-  for (const std::string& path : verb.with) given.push_back({path, ReadMaterial(path)});
+  for (const std::string& path : verb.with) given.push_back(LoadGiven(path));
   Measurement measurement = verb.measurement.Load(verb.file);
   const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   CompareOptions options = verb.compare;
@@ -116,7 +130,9 @@ std::function<int()> SetUpCompare(CLI::App* app, CommonOptions* common) {
   app->add_option("--recipes", verb->recipes,
                   "recipes by name or .toml file, with commas between (default: what suits the measurement)")
       ->group(group);
-  app->add_option("--with", verb->with, "a *.material.json to compare with, as it is; may be given again")
+  app->add_option("--with", verb->with,
+                  "a *.material.json, or a material of pbrt-v4, Mitsuba, MaterialX, glTF, an RGL or MERL table, to "
+                  "compare with as it is; may be given again")
       ->group(group);
   verb->overrides.AddTo(app, group);
   app->add_option("--folds", verb->compare.folds,

@@ -97,11 +97,27 @@ void FitAll(const Recipe& recipe, const CompareOptions& options, Measurement* me
   model->free_parameters = Layout(*used, measurement->channels.names).size();
 }
 
+// f_r of the model at the samples, [channel][sample].
+std::vector<std::vector<double>> PredictModel(const ComparedModel& model, const Samples& samples, ThreadPool* pool) {
+  if (!model.brdf) return Predict(model.material, samples, pool);
+  const std::size_t channels = samples.values.size(), count = samples.size();
+  std::vector<std::vector<double>> f_r(channels, std::vector<double>(count));
+  constexpr std::size_t kPiece = 1024;
+  pool->Run((count + kPiece - 1) / kPiece, [&](std::size_t piece) {
+    std::vector<double> values(channels);
+    for (std::size_t i = piece * kPiece; i < std::min(count, (piece + 1) * kPiece); ++i) {
+      model.brdf(samples.wi(i), samples.wo(i), values.data());
+      for (std::size_t c = 0; c < channels; ++c) f_r[c][i] = values[c];
+    }
+  });
+  return f_r;
+}
+
 // Errors on all samples, and the information criteria of fitted models.
 void Judge(const Comparison& comparison, const Measurement& measurement, double black, ThreadPool* pool,
            ComparedModel* model) {
   const Samples& samples = measurement.samples;
-  const std::vector<std::vector<double>> f_r = Predict(model->material, samples, pool);
+  const std::vector<std::vector<double>> f_r = PredictModel(*model, samples, pool);
   model->errors = ErrorsUnderAllMetrics(comparison.weighting, samples, f_r, pool);
   const double mean_square = SumSquares(comparison.metric, comparison.weighting, true, samples, f_r).MeanSquare();
   const double floor = 1e-12 * black;
@@ -119,15 +135,16 @@ struct FoldResult {
 };
 
 FoldResult RunFold(const Comparison& comparison, const Fold& fold, const Recipe* recipe, const FitOptions& options,
-                   const Material& given) {
+                   const ComparedModel& given) {
   FoldResult result;
   const auto start = std::chrono::steady_clock::now();
   ThreadPool alone(1);
   try {
     Measurement training = fold.training;
-    const Material material = recipe == nullptr ? given : Fit(*recipe, options, &training);
+    ComparedModel model = given;
+    if (recipe != nullptr) model.material = Fit(*recipe, options, &training);
     result.sum = SumSquares(comparison.metric, comparison.weighting, true, fold.test.samples,
-                            Predict(material, fold.test.samples, &alone));
+                            PredictModel(model, fold.test.samples, &alone));
   } catch (const InputError& error) {
     result.remark = error.what();
   }
@@ -271,6 +288,7 @@ Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMa
       model.name = material.name;
       model.fitted = false;
       model.material = material.material;
+      model.brdf = material.brdf;
       if (!model.material.source.sha256.empty() && model.material.source.sha256 == measurement->sha256)
         model.remarks.emplace_back("was fitted to this measurement, so nothing was held out of it");
     }
@@ -284,7 +302,7 @@ Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMa
   pool.Run(results.size(), [&](std::size_t task) {
     const std::size_t m = task / folds.size();
     results[task] = RunFold(comparison, folds[task % folds.size()], m < recipes.size() ? &used[m] : nullptr, alone,
-                            comparison.models[m].material);
+                            comparison.models[m]);
     progress.Advance();
   });
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "lobefit/fit/fit.h"
+#include "lobefit/measurement/brdf_function.h"
 
 namespace lobefit {
 
@@ -32,12 +33,15 @@ struct CompareOptions {
 struct GivenMaterial {
   std::string name;
   Material material;
+  // f_r in place of the material's model, for materials of other programs: the material then has no more than channels.
+  BrdfFunction brdf = nullptr;
 };
 
 struct ComparedModel {
   std::string name;
   bool fitted = true;  // false: a given material
   Material material;
+  BrdfFunction brdf = nullptr;  // of a given material that has one
   std::size_t free_parameters = 0;
   std::vector<MetricError> errors;  // on all samples of the comparison
   double aic = 0, bic = 0;

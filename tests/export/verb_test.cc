@@ -73,6 +73,24 @@ TEST_F(ExportVerb, BadUse) {
       << "nothing is left behind";
 }
 
+// The exported material beside recipes: its error on the measurement is near that of the fit it came from.
+TEST_F(ExportVerb, CompareTakesMaterialsOfRenderers) {
+  ASSERT_EQ(Shell("lobefit export brushed_metal.material.json --to gltf,mitsuba").exit_code, 0);
+  const ProgramResult run = Shell(
+      "lobefit compare $SOURCE/samples/brushed_metal.csv --recipes ggx --with brushed_metal.gltf --with "
+      "brushed_metal.mitsuba.xml --with brushed_metal.material.json --name out --json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::json models = nlohmann::json::parse(run.out)["models"];
+  ASSERT_EQ(models.size(), 4U);
+  const double ggx = models[0]["errors"]["cube-root"], fit = models[3]["errors"]["cube-root"];
+  for (const int k : {1, 2}) {
+    const double error = models[static_cast<std::size_t>(k)]["errors"]["cube-root"];
+    EXPECT_LT(error, 0.5 * ggx) << k;
+    EXPECT_GT(error, fit) << k;
+  }
+  EXPECT_EQ(Shell("lobefit compare $SOURCE/samples/brushed_metal.csv --recipes ggx --with nothing.mtlx").exit_code, 3);
+}
+
 TEST_F(ExportVerb, ListNamesEveryTarget) {
   const ProgramResult run = Shell("lobefit export --list");
   EXPECT_EQ(run.exit_code, 0);
