@@ -28,6 +28,7 @@ constexpr Verb kVerbs[] = {
     {"convert", "write a measurement file in another format, and say what was lost", SetUpConvert},
     {"export", "write a fitted material for renderers, and say what each cannot carry", SetUpExport},
     {"synth", "make a synthetic measurement file from a material or recipe", SetUpSynth},
+    {"validate", "make measurements from known parameters, fit them, and check the intervals", SetUpValidate},
     {"eval", "evaluate a quantity of the papers, with gradient, for rows of CSV", SetUpEval},
 };
 

@@ -91,4 +91,16 @@ Recipe RecipeOptions::Choose(const Measurement& measurement) const {
   return recipe;
 }
 
+void FittedModel::AddTo(CLI::App* app) {
+  const std::string group = "What to fit";
+  app->add_option("--recipe", recipe_, "a recipe by name or a .toml file (default: the truth's model)")->group(group);
+  app->add_option("--metric", metric_, "overrides the recipe: " + Join(Names(MetricChoices())))->group(group);
+}
+
+Recipe FittedModel::Choose(const Model& truth) const {
+  Recipe recipe = recipe_.empty() ? DefaultRecipe(truth, "model of the truth") : LoadRecipe(recipe_);
+  Override(metric_, "--metric", MetricChoices(), &recipe.metric);
+  return recipe;
+}
+
 }  // namespace lobefit

@@ -38,6 +38,16 @@ class RecipeOptions {
 // Names of the recipes of the library, sorted.
 std::vector<std::string> RecipeNames();
 
+// What a validation fits: the truth's own model unless a recipe is given.
+class FittedModel {
+ public:
+  void AddTo(CLI::App* app);
+  Recipe Choose(const Model& truth) const;
+
+ private:
+  std::string recipe_, metric_;
+};
+
 // A recipe file, or a recipe of the library by its name ("ellipsoid"). Throws InputError that lists the names.
 Recipe LoadRecipe(const std::string& name_or_path);
 

@@ -28,5 +28,6 @@ std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpSynth(CLI::App* app, CommonOptions* common);
+std::function<int()> SetUpValidate(CLI::App* app, CommonOptions* common);
 
 }  // namespace lobefit

@@ -12,6 +12,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/layout.h"
+#include "lobefit/fit/misfit.h"
 #include "lobefit/fit/prediction.h"
 #include "lobefit/fit/problem.h"
 #include "lobefit/fit/search.h"
@@ -213,10 +214,12 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   material.model = recipe.model;
   material.channels = measurement->channels.names;
   material.wavelengths_nm = measurement->channels.wavelengths_nm;
-  const Uncertainty uncertainty = EstimateUncertainty(problem, layout, best.u, GroupByIncidence(*measurement), &pool);
+  const Incidences incidences = GroupByIncidence(*measurement);
+  const Uncertainty uncertainty = EstimateUncertainty(problem, layout, best.u, incidences, &pool);
   material.degenerate = uncertainty.degenerate;
   Report(layout, best.u, uncertainty, &material);
   material.remarks = measurement->remarks;
+  material.misfit = TestMisfit(problem, layout, best.u, samples, incidences);
   material.samples_read = read;
   material.samples_used = samples.size();
   for (int r = 0; r < kSetAsideReasons; ++r) {

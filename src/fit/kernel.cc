@@ -336,6 +336,24 @@ void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t 
   }
 }
 
+void Columns(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+             std::vector<std::vector<double>>* columns) {
+  const std::size_t all = end - begin;
+  columns->assign(model.channels, std::vector<double>(model.columns() * all));
+  Block block(samples, model, true);
+  double unused = 0;
+  for (std::size_t i = begin; i < end; i += kBlock) {
+    const std::size_t count = std::min(kBlock, end - i);
+    block.Evaluate(i, count);
+    block.Residuals(i, &unused);
+    for (std::size_t c = 0; c < model.channels; ++c) {
+      const double* from = block.Columns(c).data();
+      for (std::size_t j = 0; j < model.columns(); ++j)
+        std::copy_n(from + j * kBlock, count, (*columns)[c].data() + j * all + (i - begin));
+    }
+  }
+}
+
 void ModelValues(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
                  std::vector<std::vector<double>>* values) {
   values->assign(model.channels, std::vector<double>(end - begin));

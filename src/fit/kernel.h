@@ -74,6 +74,11 @@ void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gra
 void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
             std::vector<std::vector<double>>* scores);
 
+// The weighted Jacobian and the residuals themselves: columns[c][j * (end - begin) + i - begin] with j over the columns
+// of KernelModel, the last one the residual.
+void Columns(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+             std::vector<std::vector<double>>* columns);
+
 // f_r of the model: values[c][i - begin].
 void ModelValues(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
                  std::vector<std::vector<double>>* values);

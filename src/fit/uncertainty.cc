@@ -16,16 +16,116 @@ namespace {
 // its standard error is 1e5 times that of its coordinates alone.
 constexpr double kUndetermined = 1e-10;
 
-// Sums of scores over samples: sum s s^T, and sum s a cluster.
+// Samples x channels x coordinates^2 up to which leverages are computed: about 0.1 s on one thread. Beyond it a sample
+// weighs too little for them to matter.
+constexpr double kMostLeverageWork = 1e8;
+
+// The middle of the sandwich in whitened coordinates, in which H is the unit matrix.
 struct Meat {
-  Eigen::MatrixXd samples;   // n x n
-  Eigen::MatrixXd clusters;  // clusters x n
+  Eigen::MatrixXd samples;   // m x m, sum over samples of s s^T
+  Eigen::MatrixXd clusters;  // clusters x m, s a cluster
+  // Gauss-Newton matrix of each cluster, m x m stacked; empty without leverages.
+  Eigen::MatrixXd cluster_hessians;
 };
 
-Meat SumScores(const Problem& problem, const Layout& layout, const std::vector<double>& u, const Incidences& incidences,
+// Coordinate of each column of channel `c` among the active ones, -1 for none; without the residual's column.
+std::vector<int> ActiveColumns(const Layout& layout, std::size_t c, const std::vector<int>& place) {
+  std::vector<int> columns;
+  for (std::size_t k = 0; k < layout.shape_size(); ++k) columns.push_back(place[k]);
+  for (const Layout::Linear& linear : layout.linear(c))
+    columns.push_back(linear.index < 0 ? -1 : place[static_cast<std::size_t>(linear.index)]);
+  return columns;
+}
+
+// (1 - P)^(-1/2) r with P = B B^T, all eigenvalues in [0, 1): the binomial series. Where a sample is all that
+// determines some direction the series does not converge and is cut: its residual is zero there anyway.
+Eigen::VectorXd Inflated(const Eigen::MatrixXd& b, const Eigen::VectorXd& r) {
+  constexpr int kMostTerms = 60;
+  Eigen::VectorXd term = r, sum = r;
+  for (int k = 1; k <= kMostTerms; ++k) {
+    const Eigen::VectorXd next = b * (b.transpose() * term);
+    term = next * ((k - 0.5) / k);
+    sum += term;
+    if (term.squaredNorm() <= 1e-12 * sum.squaredNorm()) break;
+  }
+  return sum;
+}
+
+// With leverages: residuals of a sample are inflated by (1 - P_ii)^(-1/2), since a fit bends towards the samples that
+// weigh most in it and leaves them too small residuals [MacKinnon and White 1985, HC2].
+Meat SumWithLeverages(const Problem& problem, const Layout& layout, const std::vector<double>& u,
+                      const std::vector<int>& active, const Eigen::MatrixXd& whitening, const Incidences& incidences,
+                      ThreadPool* pool) {
+  const KernelModel kernel = layout.ToKernel(u.data());
+  const Eigen::Index m = whitening.cols();
+  const auto clusters = static_cast<Eigen::Index>(incidences.wi.size());
+  std::vector<int> place(layout.size(), -1);
+  for (std::size_t a = 0; a < active.size(); ++a) place[static_cast<std::size_t>(active[a])] = static_cast<int>(a);
+  std::vector<std::vector<int>> columns;
+  for (std::size_t c = 0; c < layout.channels(); ++c) columns.push_back(ActiveColumns(layout, c, place));
+  const auto channels = static_cast<Eigen::Index>(layout.channels());
+  const std::size_t runs = RunCount(problem.size());
+  std::vector<Meat> partial(runs);
+  pool->Run(runs, [&](std::size_t run) {
+    Meat& meat = partial[run];
+    meat.samples.setZero(m, m);
+    meat.clusters.setZero(clusters, m);
+    meat.cluster_hessians.setZero(clusters * m, m);
+    const std::size_t last = RunBegin(problem.size(), run + 1);
+    constexpr std::size_t kPiece = 256;
+    std::vector<std::vector<double>> values;
+    Eigen::MatrixXd b(channels, m);
+    Eigen::VectorXd r(channels);
+    for (std::size_t begin = RunBegin(problem.size(), run); begin < last; begin += kPiece) {
+      const std::size_t count = std::min(last, begin + kPiece) - begin;
+      Columns(problem.kernel_samples(), kernel, begin, begin + count, &values);
+      for (std::size_t i = 0; i < count; ++i) {
+        b.setZero();
+        for (Eigen::Index c = 0; c < channels; ++c) {
+          const std::vector<int>& to = columns[static_cast<std::size_t>(c)];
+          const double* value = values[static_cast<std::size_t>(c)].data() + i;
+          for (std::size_t j = 0; j < to.size(); ++j) {
+            if (to[j] >= 0) b.row(c) += value[j * count] * whitening.row(to[j]);
+          }
+          r(c) = value[to.size() * count];
+        }
+        const Eigen::VectorXd score = b.transpose() * Inflated(b, r);
+        meat.samples.selfadjointView<Eigen::Upper>().rankUpdate(score);
+        const auto group = static_cast<Eigen::Index>(incidences.group[begin + i]);
+        meat.clusters.row(group) += b.transpose() * r;
+        meat.cluster_hessians.middleRows(group * m, m).noalias() += b.transpose() * b;
+      }
+    }
+  });
+  for (std::size_t run = 1; run < runs; ++run) {
+    partial[0].samples += partial[run].samples;
+    partial[0].clusters += partial[run].clusters;
+    partial[0].cluster_hessians += partial[run].cluster_hessians;
+  }
+  partial[0].samples = Eigen::MatrixXd(partial[0].samples.selfadjointView<Eigen::Upper>());
+  return partial[0];
+}
+
+// The same for clusters, (1 - H_g)^(-1/2) s_g [Bell and McCaffrey 2002, CR2]; directions that one cluster alone
+// determines are left out: it has no residual there.
+void InflateClusters(Meat* meat) {
+  const Eigen::Index m = meat->clusters.cols();
+  for (Eigen::Index g = 0; g < meat->clusters.rows(); ++g) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(meat->cluster_hessians.middleRows(g * m, m));
+    const Eigen::VectorXd factor =
+        (1 - eigen.eigenvalues().array()).unaryExpr([](double x) { return x > 1e-9 ? 1 / std::sqrt(x) : 0.0; });
+    const Eigen::VectorXd score = meat->clusters.row(g).transpose();
+    meat->clusters.row(g) =
+        (eigen.eigenvectors() * (factor.asDiagonal() * (eigen.eigenvectors().transpose() * score))).transpose();
+  }
+}
+
+// Without leverages, for large problems in which no sample weighs much.
+Meat SumScores(const Problem& problem, const Layout& layout, const std::vector<double>& u,
+               const std::vector<int>& active, const Eigen::MatrixXd& whitening, const Incidences& incidences,
                ThreadPool* pool) {
   const KernelModel kernel = layout.ToKernel(u.data());
-  const auto n = static_cast<Eigen::Index>(layout.size());
+  const Eigen::Index m = whitening.cols(), n = whitening.rows();
   const auto clusters = static_cast<Eigen::Index>(incidences.wi.size());
   const std::size_t runs = RunCount(problem.size());
   std::vector<Meat> partial(runs);
@@ -43,8 +143,8 @@ Meat SumScores(const Problem& problem, const Layout& layout, const std::vector<d
       const std::vector<std::vector<double>> gathered = layout.GatherScores(scores);
       s.resize(static_cast<Eigen::Index>(end - begin), n);
       for (Eigen::Index j = 0; j < n; ++j) {
-        std::copy(gathered[static_cast<std::size_t>(j)].begin(), gathered[static_cast<std::size_t>(j)].end(),
-                  s.col(j).data());
+        const std::vector<double>& from = gathered[static_cast<std::size_t>(active[static_cast<std::size_t>(j)])];
+        std::copy(from.begin(), from.end(), s.col(j).data());
       }
       meat.samples.noalias() += s.transpose() * s;
       for (std::size_t i = begin; i < end; ++i) {
@@ -56,7 +156,14 @@ Meat SumScores(const Problem& problem, const Layout& layout, const std::vector<d
     partial[0].samples += partial[run].samples;
     partial[0].clusters += partial[run].clusters;
   }
-  return partial[0];
+  // Degrees of freedom: every channel of a sample is a residual, but a sample is one independent observation.
+  const auto count = static_cast<double>(problem.size()), groups = static_cast<double>(clusters);
+  const double parameters = static_cast<double>(m) / static_cast<double>(layout.channels());
+  const double factor = count / std::max(1.0, count - parameters);
+  Meat meat;
+  meat.samples = factor * whitening.transpose() * partial[0].samples * whitening;
+  meat.clusters = std::sqrt(factor * groups / std::max(1.0, groups - 1)) * partial[0].clusters * whitening;
+  return meat;
 }
 
 // "ln alpha_x and f0[R]" for the coordinates that dominate a direction.
@@ -111,16 +218,17 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
     }
     inverse_eigenvalue(k) = undetermined ? 0.0 : 1 / inverse_eigenvalue(k);
   }
-  const Eigen::MatrixXd bread = inverse_scale.asDiagonal() * eigen.eigenvectors() * inverse_eigenvalue.asDiagonal() *
-                                eigen.eigenvectors().transpose() * inverse_scale.asDiagonal();
-  const Meat meat = SumScores(problem, layout, u, incidences, pool);
-  const auto sandwich = [&](const Eigen::MatrixXd& filling, double factor) {
-    Eigen::MatrixXd b(m, m);
-    for (Eigen::Index i = 0; i < m; ++i) {
-      for (Eigen::Index j = 0; j < m; ++j)
-        b(i, j) = filling(active[static_cast<std::size_t>(i)], active[static_cast<std::size_t>(j)]);
-    }
-    const Eigen::MatrixXd covariance = factor * bread * b * bread;
+  // H^-1 = whitening whitening^T, with undetermined directions left out.
+  const Eigen::MatrixXd whitening =
+      inverse_scale.asDiagonal() * eigen.eigenvectors() * inverse_eigenvalue.cwiseSqrt().asDiagonal();
+  const double work = static_cast<double>(problem.size()) * static_cast<double>(layout.channels()) *
+                      static_cast<double>(m) * static_cast<double>(m);
+  const bool with_leverages = work <= kMostLeverageWork;
+  Meat meat = with_leverages ? SumWithLeverages(problem, layout, u, active, whitening, incidences, pool)
+                             : SumScores(problem, layout, u, active, whitening, incidences, pool);
+  if (with_leverages) InflateClusters(&meat);
+  const auto spread = [&](const Eigen::MatrixXd& filling) {
+    const Eigen::MatrixXd covariance = whitening * filling * whitening.transpose();
     Eigen::MatrixXd full = Eigen::MatrixXd::Zero(n, n);
     for (Eigen::Index i = 0; i < m; ++i) {
       for (Eigen::Index j = 0; j < m; ++j)
@@ -128,16 +236,9 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
     }
     return full;
   };
-  // Degrees of freedom: every channel of a sample is a residual, but a sample is one independent observation.
-  const auto count = static_cast<double>(problem.size());
-  const double parameters = static_cast<double>(m) / static_cast<double>(layout.channels());
-  result.covariance = sandwich(meat.samples, count / std::max(1.0, count - parameters));
-  const auto clusters = static_cast<double>(incidences.wi.size());
-  result.has_clusters = clusters >= 2;
-  if (result.has_clusters) {
-    result.clustered = sandwich(meat.clusters.transpose() * meat.clusters,
-                                clusters / (clusters - 1) * (count - 1) / std::max(1.0, count - parameters));
-  }
+  result.covariance = spread(meat.samples);
+  result.has_clusters = incidences.wi.size() >= 2;
+  if (result.has_clusters) result.clustered = spread(meat.clusters.transpose() * meat.clusters);
   return result;
 }
 

@@ -12,13 +12,16 @@
 
 namespace lobefit {
 
-// Covariances of the solver's coordinates: sandwiches H^-1 B H^-1 with H = J^T J and B = sum of s s^T.
+// Covariances of the solver's coordinates: sandwiches H^-1 B H^-1 with H = J^T J and B = sum of s s^T. A fit bends
+// towards what weighs much in it and leaves too small residuals there; they are set right by the leverages: HC2 for
+// samples [MacKinnon and White 1985], CR2 for clusters [Bell and McCaffrey 2002]. In large problems, where no sample
+// weighs much, the factors N / (N - p) and G / (G - 1) stand for them (HC1, CR1).
 struct Uncertainty {
   // s = J^T r of one sample over its channels: valid where the noise differs from sample to sample, but samples are
-  // independent.
+  // independent. Errors are normal: 95 % within 1.96 standard errors.
   Eigen::MatrixXd covariance;
   // s = J^T r of one incident direction: samples of one incidence may depend on each other. Zero rows with fewer than
-  // two incidences.
+  // two incidences. Estimated from G incidences: 95 % within the quantile of Student's t with G - 1 degrees of freedom.
   Eigen::MatrixXd clustered;
   bool has_clusters = false;
   // Coordinates at a bound: held, variance 0.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "lobefit/math/directions.h"
 
@@ -10,21 +9,6 @@ namespace lobefit {
 namespace {
 
 constexpr double kFinePatch = 15 * kPi / 180;
-
-// Standard normal numbers by Box and Muller from the raw bits, so that a seed gives the same numbers with every
-// standard library.
-class NormalNumbers {
- public:
-  explicit NormalNumbers(std::uint64_t seed) : random_(seed) {}
-  double Next() {
-    const double radius = std::sqrt(-2 * std::log(1 - Uniform()));
-    return radius * std::cos(2 * kPi * Uniform());
-  }
-
- private:
-  double Uniform() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }
-  std::mt19937_64 random_;
-};
 
 void AddRing(const Vec3& wi, double theta, double step, double turn, const Vec3& axis_frame, DirectionList* list) {
   const int count = theta < step / 4 ? 1 : std::max(3, static_cast<int>(std::lround(2 * kPi * std::sin(theta) / step)));
@@ -74,25 +58,31 @@ DirectionList Goniometer(const GoniometerLayout& layout) {
   return list;
 }
 
-Measurement Synthesise(const DirectionList& directions, const Channels& channels, const BrdfFunction& brdf,
-                       const Noise& noise, std::uint64_t seed) {
+Measurement TrueMeasurement(const DirectionList& directions, const Channels& channels, const BrdfFunction& brdf,
+                            const Noise& noise, double lobe_width) {
+  BrdfFunction seen = brdf;
+  if (noise.misalignment_x != 0 || noise.misalignment_y != 0)
+    seen = WithMisalignment(seen, noise.misalignment_x, noise.misalignment_y, channels.size());
+  if (noise.aperture > 0) seen = WithAperture(seen, noise.aperture, channels.size(), lobe_width);
   MeasurementBuilder builder(channels);
-  NormalNumbers normal(seed);
   std::vector<double> values(channels.size());
   for (std::size_t i = 0; i < directions.size(); ++i) {
     if (directions.wi[i].z > 0 && directions.wo[i].z > 0) {
-      brdf(directions.wi[i], directions.wo[i], values.data());
+      seen(directions.wi[i], directions.wo[i], values.data());
     } else {
       std::fill(values.begin(), values.end(), 0.0);
-    }
-    for (double& value : values) {
-      if (noise.multiplicative > 0) value *= 1 + noise.multiplicative * normal.Next();
-      if (noise.additive > 0) value += noise.additive * normal.Next();
     }
     builder.Add(directions.wi[i], directions.wo[i], values.data(), static_cast<std::uint32_t>(i));
   }
   Measurement measurement = builder.Finish();
   measurement.format = "synthetic";
+  return measurement;
+}
+
+Measurement Synthesise(const DirectionList& directions, const Channels& channels, const BrdfFunction& brdf,
+                       const Noise& noise, std::uint64_t seed, double lobe_width) {
+  Measurement measurement = TrueMeasurement(directions, channels, brdf, noise, lobe_width);
+  AddNoise(noise, seed, &measurement);
   return measurement;
 }
 

@@ -1,8 +1,9 @@
-// Synthetic measurements: directions of a layout, values of a reflectance function, declared noise. Everything is
-// seeded.
+// Synthetic measurements: directions of a layout, values of a reflectance function as an instrument would see them,
+// declared noise. Everything is seeded.
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "lobefit/measurement/brdf_function.h"
@@ -14,6 +15,10 @@ namespace lobefit {
 struct DirectionList {
   std::vector<Vec3> wi, wo;
   std::size_t size() const { return wi.size(); }
+  void Add(const Vec3& light, const Vec3& viewer) {
+    wi.push_back(light);
+    wo.push_back(viewer);
+  }
 };
 
 // A goniometer: for each of `polar_angles` and `azimuths` (radians) of the light, a detector grid of polar rings at
@@ -23,17 +28,67 @@ struct GoniometerLayout {
   std::vector<double> polar_angles, azimuths;
   double detector_step = 10 * kPi / 180;
   double theta_max = 80 * kPi / 180;
-  bool in_plane = false;  // only detectors in the plane of incidence
+  bool in_plane = false;  // only detectors in the plane of incidence, at half the step
 };
 DirectionList Goniometer(const GoniometerLayout& layout);
 
+// What an instrument does to the true values. The terms act in the order of the members; each draws from a stream of
+// its own, so that switching one on does not change the others.
 struct Noise {
   double multiplicative = 0;  // standard deviation of a normal factor about 1, independent a sample and channel
   double additive = 0;        // standard deviation of a normal term, 1/sr
+  // Standard deviation of a normal factor about 1 that all samples and channels of one incident direction share.
+  double drift = 0;
+  // Counting noise: the reading f_r cos(theta_i) that one count stands for, 1/sr; counts are Poisson distributed.
+  double poisson = 0;
+  double outliers = 0;     // share of samples whose value is multiplied by a factor drawn log-uniformly from [1/10, 10]
+  bool rectified = false;  // only the magnitude is kept
+  double quantisation = 0;  // step to whose multiples values are rounded, 1/sr
+  double holes = 0;         // share of samples that were not measured
+  // Not random: the detector averages over a disc of this half angle, radians.
+  double aperture = 0;
+  // Not random: the sample is turned about x, then about y, radians; the instrument reports directions as if it were
+  // not.
+  double misalignment_x = 0, misalignment_y = 0;
+
+  bool operator==(const Noise&) const = default;
 };
 
-// f_r of `brdf` at the directions, with noise drawn from `seed`. Directions at or below the horizon are set aside.
+// One member of Noise as the command line, recipes of studies and documents know it.
+struct NoiseTerm {
+  const char* name;  // "multiplicative", "misalignment-x"
+  const char* unit;  // "1", "1/sr", "deg", "flag"
+  double Noise::*value;
+  bool Noise::*flag;
+  double highest;  // largest value allowed, outside unit; the smallest is 0, or -highest where `negative`
+  bool negative;
+  const char* description;
+};
+const std::vector<NoiseTerm>& NoiseTerms();
+
+// "multiplicative=0.05,drift=0.03,rectified"; degrees for angles. Empty: no noise. Throws UsageError with the allowed
+// terms.
+Noise ParseNoise(const std::string& text);
+// The terms that are not zero, in the same words.
+std::string ToText(const Noise& noise);
+
+// f_r of `brdf` averaged over the solid angle of a disc of half angle `half_angle` radians about wo, by a product rule
+// that is refined where the disc is wider than `lobe_width` (radians, about the smallest alpha): to 1e-4 of the value.
+// The part of the disc below the horizon does not count.
+BrdfFunction WithAperture(const BrdfFunction& brdf, double half_angle, std::size_t channels, double lobe_width = 1e9);
+// f_r of a sample that is turned about x, then y: the directions that the instrument names are not those of the
+// sample's frame. Zero where the turned direction is at or below the sample's horizon.
+BrdfFunction WithMisalignment(const BrdfFunction& brdf, double about_x, double about_y, std::size_t channels);
+
+// f_r of `brdf` at the directions, with `noise` drawn from `seed`. Directions at or below the horizon are set aside,
+// holes too. `lobe_width` as for WithAperture.
 Measurement Synthesise(const DirectionList& directions, const Channels& channels, const BrdfFunction& brdf,
-                       const Noise& noise, std::uint64_t seed);
+                       const Noise& noise, std::uint64_t seed, double lobe_width = 1e9);
+
+// The same in two steps, for many draws of noise on one truth: values without random terms, then the random terms of
+// `noise` on them.
+Measurement TrueMeasurement(const DirectionList& directions, const Channels& channels, const BrdfFunction& brdf,
+                            const Noise& noise, double lobe_width = 1e9);
+void AddNoise(const Noise& noise, std::uint64_t seed, Measurement* measurement);
 
 }  // namespace lobefit

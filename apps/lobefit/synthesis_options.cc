@@ -1,0 +1,92 @@
+#include "synthesis_options.h"
+
+#include "recipe_options.h"
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+#include "lobefit/material/json.h"
+
+namespace lobefit {
+namespace {
+
+std::vector<double> AngleList(const std::string& text, const char* option) {
+  std::vector<double> angles;
+  for (const std::string_view field : Split(text, ',')) {
+    const std::optional<double> degrees = ParseDouble(field);
+    if (!degrees)
+      throw UsageError(fmt::format("{} '{}': '{}' is not a number; write degrees with commas between", option, text,
+                                   Excerpt(field)));
+    angles.push_back(DegreesToRadians(*degrees));
+  }
+  return angles;
+}
+
+}  // namespace
+
+void SynthesisOptions::AddTo(CLI::App* app) {
+  std::vector<std::string> layouts, terms;
+  for (const LayoutChoice& choice : LayoutChoices()) layouts.emplace_back(choice.name);
+  for (const NoiseTerm& term : NoiseTerms()) terms.push_back(std::string(term.name) + " (" + term.description + ")");
+  const std::string where = "Directions", what = "Instrument";
+  app->add_option("--layout", layout_, "which directions are measured: " + Join(layouts) + ", or a measurement file")
+      ->group(where);
+  app->add_option("--theta-i", theta_i_, "polar angles of the light, degrees, with commas between")->group(where);
+  app->add_option("--phi-i", phi_i_, "azimuths of the light, degrees, with commas between")->group(where);
+  app->add_option("--detector-step", step_,
+                  "step of the detector grid, degrees (half of it about the mirror direction)")
+      ->check(CLI::Range(0.2, 45.0))
+      ->group(where);
+  app->add_option("--theta-max", theta_max_, "largest polar angle of the detector, degrees")
+      ->check(CLI::Range(1.0, 89.9))
+      ->group(where);
+  app->add_flag("--in-plane", in_plane_, "the same as --layout in-plane")->group(where);
+  app->add_option("--samples", samples_, "samples a light direction of the layouts by visible normals (default 256)")
+      ->check(CLI::Range(4, 1000000))
+      ->group(where);
+  app->add_option(
+         "--noise", noise_,
+         "terms with commas between, as in multiplicative=0.05,drift=0.03; a number alone is multiplicative: " +
+             Join(terms, ", "))
+      ->group(what);
+  app->add_option("--channels", channels_, "names of the channels of a recipe, with commas between")->group(what);
+  app->add_option("--seed", seed_, "seed of the noise (default 1)")->group(what);
+}
+
+Truth SynthesisOptions::LoadTruth(const std::string& source) const {
+  if (source.ends_with(".json")) return TruthOf(ReadMaterial(source));
+  std::vector<std::string> channels;
+  for (const std::string_view name : Split(channels_, ',')) channels.emplace_back(Trim(name));
+  return TruthOf(LoadRecipe(source), channels, source);
+}
+
+LayoutRequest SynthesisOptions::Request() const {
+  LayoutRequest request;
+  request.name = in_plane_ ? "in-plane" : layout_;
+  request.samples = samples_;
+  request.goniometer.polar_angles = AngleList(theta_i_, "--theta-i");
+  request.goniometer.azimuths = AngleList(phi_i_, "--phi-i");
+  request.goniometer.detector_step = DegreesToRadians(step_);
+  request.goniometer.theta_max = DegreesToRadians(theta_max_);
+  return request;
+}
+
+MeasurementLayout SynthesisOptions::Layout(const Truth& truth) const {
+  MeasurementLayout layout = MakeLayout(Request(), truth);
+  const double aperture = ChosenNoise().aperture;
+  if (2 * aperture > layout.step) {
+    throw UsageError(
+        fmt::format("an aperture of half angle {:.3g} degrees is wider than the step of the grid, {:.3g} degrees, so "
+                    "that neighbouring "
+                    "samples overlap; choose at most aperture={:.3g}, or a wider --detector-step",
+                    RadiansToDegrees(aperture), RadiansToDegrees(layout.step), RadiansToDegrees(layout.step / 2)));
+  }
+  return layout;
+}
+
+Noise SynthesisOptions::ChosenNoise() const {
+  if (const std::optional<double> alone = ParseDouble(noise_)) return ParseNoise("multiplicative=" + noise_);
+  return ParseNoise(noise_);
+}
+
+}  // namespace lobefit

@@ -1,0 +1,134 @@
+#include "lobefit/validate/experiment.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/parallel.h"
+#include "lobefit/fit/layout.h"
+#include "lobefit/fit/problem.h"
+#include "lobefit/measurement/incidence.h"
+
+namespace lobefit {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Streams of one trial's seed.
+enum TrialStream : std::uint64_t { kMaterial = 100, kNoise = 101 };
+
+std::vector<Ellipsoid> Shapes(const Truth& truth) {
+  std::vector<Ellipsoid> shapes;
+  for (std::size_t l = 0; l < truth.model.lobes.size(); ++l) {
+    const std::vector<double>* v = &truth.values[FirstParameter(truth.model, l)];
+    shapes.push_back({v[0][0], v[1][0], v[2][0], v[3][0], v[4][0]});
+  }
+  return shapes;
+}
+
+// The cost function of the fit at the true parameters.
+double CostAt(const Truth& truth, const Recipe& recipe, const Measurement& measurement) {
+  const Layout layout(recipe, measurement.channels.names);
+  const Problem problem(measurement.samples, recipe);
+  std::vector<double> u = layout.FromShapes(Shapes(truth));
+  // Those that are not of the shape, in the order of Layout::linear.
+  std::vector<std::size_t> others;
+  const std::vector<Parameter> parameters = Parameters(truth.model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].group != ParameterGroup::kShape) others.push_back(i);
+  }
+  for (std::size_t c = 0; c < layout.channels(); ++c) {
+    for (std::size_t k = 0; k < layout.linear(c).size(); ++k) {
+      const int index = layout.linear(c)[k].index;
+      if (index >= 0) u[static_cast<std::size_t>(index)] = truth.values[others[k]][c];
+    }
+  }
+  ThreadPool alone(1);
+  return problem.Sum(layout.ToKernel(u.data()), false, &alone).sum_rho / 2;
+}
+
+Measurement MeasurementOf(const Experiment& experiment, const Truth& truth, std::uint64_t seed) {
+  Measurement measurement = Synthesise(experiment.directions, {truth.channels, {}}, BrdfOf(truth), experiment.noise,
+                                       seed, SmallestAlpha(truth));
+  measurement.isotropic = experiment.isotropic;
+  measurement.source = "synthetic";
+  return measurement;
+}
+
+}  // namespace
+
+bool IsSameModel(const Model& a, const Model& b) {
+  if (a.lobes.size() != b.lobes.size() || a.diffuse != b.diffuse) return false;
+  for (std::size_t l = 0; l < a.lobes.size(); ++l) {
+    if (a.lobes[l].ndf != b.lobes[l].ndf || a.lobes[l].masking != b.lobes[l].masking ||
+        a.lobes[l].fresnel != b.lobes[l].fresnel || a.lobes[l].metal != b.lobes[l].metal) {
+      return false;
+    }
+  }
+  return true;
+}
+
+Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measurement measurement) {
+  Trial trial;
+  trial.done = true;
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    const Material material = Fit(experiment.recipe, experiment.fit, &measurement);
+    trial.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const bool same = IsSameModel(material.model, truth.model);
+    const ParameterValues values = material.Values();
+    // Names decide which numbers belong together where the models differ.
+    const ParameterValues aligned = AlignedWith(same ? values : truth.values, truth);
+    const std::vector<Entry> true_entries = Entries(truth.model, truth.channels);
+    for (const Entry& entry : Entries(material.model, material.channels)) {
+      const FittedParameter& fitted = material.parameters[entry.parameter];
+      trial.value.push_back(fitted.values[entry.channel] / entry.factor);
+      trial.standard_error.push_back(fitted.standard_error[entry.channel] / entry.factor);
+      trial.standard_error_clustered.push_back(fitted.standard_error_clustered[entry.channel] / entry.factor);
+      trial.free.push_back(fitted.free);
+      trial.at_bound.push_back(fitted.at_bound);
+      trial.truth.push_back(kNan);
+      for (const Entry& other : true_entries) {
+        if (other.name == entry.name) trial.truth.back() = aligned[other.parameter][other.channel] / entry.factor;
+      }
+    }
+    trial.converged = material.termination.converged;
+    trial.determined = material.termination.determined;
+    trial.degenerate = material.degenerate;
+    trial.cost = material.cost;
+    trial.minima = material.minima.size();
+    trial.misfit = material.misfit.flagged;
+    trial.misfit_probability = material.misfit.probability;
+    trial.samples = measurement.samples.size();
+    trial.incidences = GroupByIncidence(measurement).wi.size();
+    trial.cost_at_truth = same ? CostAt(truth, experiment.recipe, measurement) : kNan;
+    trial.slope_difference = same ? SlopeDifference(truth, values) : kNan;
+  } catch (const InputError& error) {
+    trial.error = error.what();
+  }
+  return trial;
+}
+
+Trial RunTrial(const Experiment& experiment, std::size_t index) {
+  const std::uint64_t seed = StreamSeed(experiment.seed, index);
+  Truth truth = experiment.truth;
+  if (experiment.range) {
+    RandomNumbers random(StreamSeed(seed, kMaterial));
+    truth = DrawMaterial(*experiment.range, truth, &random);
+  }
+  return CompareWithTruth(experiment, truth, MeasurementOf(experiment, truth, StreamSeed(seed, kNoise)));
+}
+
+std::vector<Trial> RunTrials(const Experiment& experiment, std::size_t count, int threads,
+                             const std::function<void()>& advance, const std::atomic<bool>& stop) {
+  std::vector<Trial> trials(count);
+  ParallelFor(count, threads, [&](std::size_t index) {
+    if (stop) return;
+    trials[index] = RunTrial(experiment, index);
+    if (advance) advance();
+  });
+  return trials;
+}
+
+}  // namespace lobefit

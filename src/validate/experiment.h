@@ -1,0 +1,64 @@
+// The trials of a validation: make a measurement from known parameters, fit it, keep what came out beside what was
+// true.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lobefit/fit/fit.h"
+#include "lobefit/measurement/synthesis.h"
+#include "lobefit/validate/truth.h"
+
+namespace lobefit {
+
+struct Experiment {
+  Truth truth;
+  // Set: every trial draws a material of the truth's kind from it.
+  std::optional<MaterialRange> range;
+  DirectionList directions;
+  bool isotropic = false;  // the layout cannot express a dependence on azimuth
+  Noise noise;
+  Recipe recipe;  // what is fitted
+  FitOptions fit;
+  std::uint64_t seed = 1;
+};
+
+// Numbers are in outside units, one an entry of Entries(recipe.model, channels).
+struct Trial {
+  bool done = false;          // false: not run, the validation was interrupted
+  std::string error;          // not empty: the fit refused the measurement
+  std::vector<double> truth;  // NaN for entries that the truth's model does not have
+  std::vector<double> value, standard_error, standard_error_clustered;
+  std::vector<bool> free, at_bound;
+  bool converged = false, determined = false;
+  std::vector<std::string> degenerate;
+  double cost = 0;
+  // Cost of the true parameters on the same samples; NaN where the fitted model is not the truth's.
+  double cost_at_truth = 0;
+  double slope_difference = 0;  // of the fitted lobes from the true ones; NaN as above
+  std::size_t minima = 0, samples = 0, incidences = 0;
+  bool misfit = false;  // flagged
+  double misfit_probability = 1;
+  double seconds = 0;
+};
+
+// True where recipe and truth are the same model, so that parameters can be compared one by one.
+bool IsSameModel(const Model& a, const Model& b);
+
+// Trial `index` of `experiment`: depends on both and nothing else.
+Trial RunTrial(const Experiment& experiment, std::size_t index);
+
+// A measurement (synthetic, with known truth) fitted and compared.
+Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measurement measurement);
+
+// Trials [0, count), one fit a thread. `advance` is called after each, from any thread; once `stop` is set no further
+// trial begins and those not run come back as not done.
+std::vector<Trial> RunTrials(const Experiment& experiment, std::size_t count, int threads,
+                             const std::function<void()>& advance, const std::atomic<bool>& stop);
+
+}  // namespace lobefit

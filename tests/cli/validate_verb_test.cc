@@ -1,0 +1,79 @@
+#include "tests/support/run_program.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace lobefit {
+namespace {
+
+using ValidateVerb = ProgramTest;
+
+constexpr const char* kFew =
+    "lobefit validate $SOURCE/samples/brushed_metal.toml --theta-i 10,30,50,65 --phi-i 0,60,120 --detector-step 20 ";
+
+TEST_F(ValidateVerb, PrintsTheCalibrationOfEveryParameter) {
+  const ProgramResult result = Shell(std::string(kFew) + "--noise 0.05 --trials 20");
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  for (const char* words : {"20 of 20 trials", "alpha_x", "theta_z_deg", "diffuse[B]", "95 % intervals", "PASSED"})
+    EXPECT_THAT(result.out, testing::HasSubstr(words));
+  EXPECT_EQ(result.err, "");
+}
+
+TEST_F(ValidateVerb, TheDocumentIsTheSameWithOneAndThreeThreads) {
+  const auto document = [&](const char* threads) {
+    const ProgramResult result =
+        Shell(std::string(kFew) + "--noise multiplicative=0.05,drift=0.02 --trials 6 --json --threads " + threads);
+    nlohmann::json json = nlohmann::json::parse(result.out);
+    json.erase("command");
+    json.erase("seconds_a_fit");
+    return json;
+  };
+  const nlohmann::json one = document("1");
+  EXPECT_EQ(one, document("3"));
+  EXPECT_EQ(one["judged"], "clustered");
+  EXPECT_EQ(one["trials"]["done"], 6);
+}
+
+TEST_F(ValidateVerb, AFileWithItsTruthIsFittedAndCompared) {
+  ASSERT_EQ(
+      Shell("lobefit synth $SOURCE/samples/brushed_metal.toml --phi-i 0,60,120 --detector-step 20 --noise "
+            "multiplicative=0.03 --out a.csv && lobefit synth $SOURCE/samples/brushed_metal.toml --detector-step 20 "
+            "--phi-i 0,90 --out b.alta")
+          .exit_code,
+      0);
+  EXPECT_THAT(Files(), testing::Contains("b.alta.truth.json"));
+  const ProgramResult csv = Shell("lobefit validate a.csv"), alta = Shell("lobefit validate b.alta");
+  EXPECT_EQ(csv.exit_code, 0) << csv.out << csv.err;
+  EXPECT_THAT(csv.out, testing::HasSubstr("alpha_x"));
+  EXPECT_THAT(csv.out, testing::HasSubstr("noise multiplicative=0.03, seed 1"));
+  EXPECT_EQ(alta.exit_code, 0) << alta.out << alta.err;
+  const ProgramResult none = Shell("grep -v lobefit.truth a.csv > c.csv; lobefit validate c.csv");
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.err, testing::HasSubstr("carries no truth"));
+}
+
+TEST_F(ValidateVerb, WhatIsNotAllowedIsSaid) {
+  const auto error = [&](const std::string& options) {
+    const ProgramResult result = Shell("lobefit validate $SOURCE/samples/brushed_metal.toml " + options);
+    EXPECT_EQ(result.exit_code, 2) << options;
+    return result.err;
+  };
+  EXPECT_THAT(error("--trials 0"), testing::HasSubstr("--trials"));
+  EXPECT_THAT(error("--layout goniometr"), testing::HasSubstr("did you mean 'goniometer'?"));
+  EXPECT_THAT(error("--noise drif=1"), testing::HasSubstr("did you mean 'drift'?"));
+  EXPECT_THAT(error("--noise aperture=6"), testing::HasSubstr("wider than the step of the grid, 5 degrees"));
+  EXPECT_THAT(error("--noise holes=2"), testing::HasSubstr("[0, 0.99]"));
+}
+
+TEST_F(ValidateVerb, AnInterruptedRunReportsTheTrialsThatItHas) {
+  const ProgramResult result = Shell(
+      "lobefit validate $SOURCE/samples/brushed_metal.toml --phi-i 0,60,120 --noise 0.05 --trials 100000 --json & "
+      "sleep 2; kill -INT $!; wait $!");
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_LT(json["trials"]["done"], 100000);
+  EXPECT_EQ(json["trials"]["planned"], 100000);
+  EXPECT_THAT(result.err, testing::HasSubstr("interrupted after"));
+}
+
+}  // namespace
+}  // namespace lobefit

@@ -1,0 +1,79 @@
+#include "lobefit/validate/experiment.h"
+
+#include <cmath>
+
+#include "tests/validate/brushed.h"
+#include <gtest/gtest.h>
+
+namespace lobefit {
+namespace {
+
+TEST(Experiment, TrialsDoNotDependOnThreadsOrOnHowManyThereAre) {
+  Experiment experiment = test::BrushedExperiment("multiplicative=0.05,drift=0.02");
+  experiment.range = MaterialRange{};
+  const std::vector<Trial> one = test::Run(experiment, 6, 1), three = test::Run(experiment, 9, 3);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].value, three[i].value) << i;
+    EXPECT_EQ(one[i].truth, three[i].truth) << i;
+    EXPECT_EQ(one[i].standard_error.size(), three[i].standard_error.size());
+    EXPECT_EQ(one[i].cost, three[i].cost);
+  }
+  EXPECT_NE(one[0].truth, one[1].truth);
+  experiment.seed = 2;
+  EXPECT_NE(test::Run(experiment, 1)[0].value, one[0].value);
+}
+
+TEST(Experiment, NoiseFreeTrialsRecoverTheTruth) {
+  const Trial trial = RunTrial(test::BrushedExperiment("none"), 0);
+  EXPECT_TRUE(trial.converged);
+  EXPECT_LT(trial.slope_difference, 1e-8);
+  for (std::size_t e = 0; e < trial.value.size(); ++e)
+    EXPECT_NEAR(trial.value[e], trial.truth[e], 1e-6 * std::fabs(trial.truth[e]) + 1e-6);
+  EXPECT_NEAR(trial.cost_at_truth, 0, 1e-20);
+}
+
+TEST(Experiment, CostOfTheTruthIsThatOfTheNoiseAndTheFitIsNotWorse) {
+  const Experiment experiment = test::BrushedExperiment("multiplicative=0.05");
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Trial trial = RunTrial(experiment, i);
+    EXPECT_LE(trial.cost, trial.cost_at_truth * (1 + 1e-9));
+    // The fit takes up as many residuals as it has parameters.
+    EXPECT_GT(trial.cost, 0.97 * trial.cost_at_truth);
+  }
+}
+
+TEST(Experiment, AnotherModelIsComparedByNamesOnly) {
+  Experiment experiment = test::BrushedExperiment("none");
+  Model two = experiment.truth.model;
+  two.lobes[0].masking = Masking::kSmithHeight;
+  experiment.recipe = DefaultRecipe(two, "height");
+  const Trial trial = RunTrial(experiment, 0);
+  EXPECT_TRUE(std::isnan(trial.cost_at_truth));
+  EXPECT_TRUE(std::isnan(trial.slope_difference));
+  EXPECT_NEAR(trial.truth[0], 0.35, 1e-12);
+  EXPECT_NEAR(trial.value[0], 0.35, 0.1);
+}
+
+TEST(Experiment, AStoppedRunKeepsWhatItHas) {
+  std::atomic<bool> stop{false};
+  std::atomic<int> count{0};
+  const std::vector<Trial> trials = RunTrials(
+      test::BrushedExperiment("none"), 20, 1,
+      [&] {
+        if (++count == 3) stop = true;
+      },
+      stop);
+  ASSERT_EQ(trials.size(), 20U);
+  for (std::size_t i = 0; i < trials.size(); ++i) EXPECT_EQ(trials[i].done, i < 3) << i;
+}
+
+TEST(Experiment, AMeasurementThatCannotBeFittedIsKeptAsRefused) {
+  Experiment experiment = test::BrushedExperiment("none");
+  experiment.recipe.theta_max = 0.01;
+  const Trial trial = RunTrial(experiment, 0);
+  EXPECT_TRUE(trial.done);
+  EXPECT_NE(trial.error, "");
+}
+
+}  // namespace
+}  // namespace lobefit

@@ -1,0 +1,109 @@
+#include "lobefit/validate/truth.h"
+
+#include <cmath>
+#include <fstream>
+
+#include "tests/support/temporary_file.h"
+#include "tests/validate/brushed.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/core/ellipsoid.h"
+#include "lobefit/io/read.h"
+#include "lobefit/io/write_csv.h"
+#include "lobefit/validate/truth_file.h"
+
+namespace lobefit {
+namespace {
+
+Ellipsoid FirstLobe(const ParameterValues& v) { return {v[0][0], v[1][0], v[2][0], v[3][0], v[4][0]}; }
+
+TEST(Truth, AlignedWritingIsTheSameDistributionNearTheReportedAngle) {
+  Truth truth = test::BrushedMetal();
+  truth.values[2] = {0.1};
+  truth.values[4] = {DegreesToRadians(89)};
+  ParameterValues reported = truth.values;
+  reported[4] = {DegreesToRadians(-90)};  // one degree away, written on the other side
+  const ParameterValues aligned = AlignedWith(reported, truth);
+  EXPECT_NEAR(RadiansToDegrees(aligned[4][0]), -91, 1e-9);
+  EXPECT_NEAR(aligned[2][0], -truth.values[2][0], 1e-12);
+  EXPECT_NEAR(aligned[3][0], -truth.values[3][0], 1e-12);
+  for (const Vec3& m : {Vec3{0.1, 0.2, 0.97}, Vec3{-0.3, 0.1, 0.9}}) {
+    const double expected = EllipsoidD(FirstLobe(truth.values), Normalized(m));
+    EXPECT_NEAR(EllipsoidD(FirstLobe(aligned), Normalized(m)), expected, 1e-12 * expected);
+  }
+  // A truth whose axes are given in the other order is sorted.
+  truth.values[0].swap(truth.values[1]);
+  EXPECT_NEAR(AlignedWith(reported, truth)[0][0], 0.35, 1e-12);
+}
+
+TEST(Truth, SlopeDifferenceIsZeroOnlyForTheSameLobe) {
+  const Truth truth = test::BrushedMetal();
+  EXPECT_NEAR(SlopeDifference(truth, AlignedWith(truth.values, truth)), 0, 1e-14);
+  ParameterValues other = truth.values;
+  other[0][0] *= 1 + 1e-6;
+  EXPECT_NEAR(SlopeDifference(truth, other), 1e-6, 5e-7);
+}
+
+TEST(Truth, DrawnMaterialsStayInTheirRangeAndKeepWhatTheModelTies) {
+  MaterialRange range;
+  Truth like = test::BrushedMetal();
+  RandomNumbers random(1);
+  double steepest = 0, most_anisotropic = 1;
+  for (int i = 0; i < 500; ++i) {
+    const Truth truth = DrawMaterial(range, like, &random);
+    const Ellipsoid e = FirstLobe(truth.values);
+    EXPECT_LE(e.alpha_x, range.alpha_high);
+    EXPECT_GE(e.alpha_y, range.alpha_low * (1 - 1e-12));
+    most_anisotropic = std::max(most_anisotropic, e.alpha_x / e.alpha_y);
+    steepest = std::max(steepest, std::acos(EllipsoidRotation(e).row[2].z));
+    EXPECT_EQ(truth.values[5].size(), 3U);
+  }
+  EXPECT_LE(steepest, range.largest_tilt + 1e-12);
+  EXPECT_GT(steepest, 0.95 * range.largest_tilt);
+  EXPECT_LE(most_anisotropic, range.largest_anisotropy * (1 + 1e-12));
+  EXPECT_GT(most_anisotropic, 0.8 * range.largest_anisotropy);
+  like.model.lobes[0].ndf = Ndf::kGgx;
+  const Ellipsoid isotropic = FirstLobe(DrawMaterial(range, like, &random).values);
+  EXPECT_EQ(isotropic.alpha_x, isotropic.alpha_y);
+  EXPECT_EQ(isotropic.theta_x, 0);
+  EXPECT_EQ(isotropic.theta_z, 0);
+}
+
+TEST(TruthFile, CommentsAndSidecarsReadBackAndFitsReadTheSamplesOnly) {
+  const TruthRecord record = {test::BrushedMetal(), ParseNoise("multiplicative=0.05,rectified"), 42, "lobefit synth x"};
+  Experiment experiment = test::BrushedExperiment("none");
+  const Measurement measurement =
+      Synthesise(experiment.directions, {record.truth.channels, {}}, BrdfOf(record.truth), record.noise, record.seed);
+  const TemporaryFile file;
+  WriteCsv(measurement, TruthComments(record), file.path());
+  EXPECT_EQ(ReadMeasurement(file.path(), {}).samples.size(), measurement.samples.size());
+  const std::optional<TruthRecord> found = FindTruth(file.path());
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->truth.values[5], record.truth.values[5]);
+  EXPECT_NEAR(found->truth.values[4][0], record.truth.values[4][0], 1e-15);
+  EXPECT_EQ(found->noise, record.noise);
+  EXPECT_EQ(found->seed, 42U);
+
+  const TemporaryFile plain("no truth in here");
+  EXPECT_FALSE(FindTruth(plain.path()).has_value());
+  const std::filesystem::path beside = WriteTruthBeside(record, plain.path());
+  EXPECT_EQ(FindTruth(plain.path())->truth.channels, record.truth.channels);
+  std::ofstream(beside) << "{\"material\": 3}";
+  EXPECT_THROW(FindTruth(plain.path()), InputError);
+  std::filesystem::remove(beside);
+}
+
+TEST(Truth, RecipeWithoutValuesNamesTheParameter) {
+  Recipe recipe = DefaultRecipe(test::BrushedMetal().model, "r");
+  try {
+    TruthOf(recipe, {"Y"}, "r.toml");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("r.toml: parameter 'alpha_x' has 0 values"));
+  }
+}
+
+}  // namespace
+}  // namespace lobefit
