@@ -60,7 +60,7 @@ Truth SynthesisOptions::LoadTruth(const std::string& source) const {
   return TruthOf(LoadRecipe(source), channels, source);
 }
 
-LayoutRequest SynthesisOptions::Request() const {
+LayoutRequest SynthesisOptions::Layout() const {
   LayoutRequest request;
   request.name = in_plane_ ? "in-plane" : layout_;
   request.samples = samples_;
@@ -69,19 +69,6 @@ LayoutRequest SynthesisOptions::Request() const {
   request.goniometer.detector_step = DegreesToRadians(step_);
   request.goniometer.theta_max = DegreesToRadians(theta_max_);
   return request;
-}
-
-MeasurementLayout SynthesisOptions::Layout(const Truth& truth) const {
-  MeasurementLayout layout = MakeLayout(Request(), truth);
-  const double aperture = ChosenNoise().aperture;
-  if (2 * aperture > layout.step) {
-    throw UsageError(
-        fmt::format("an aperture of half angle {:.3g} degrees is wider than the step of the grid, {:.3g} degrees, so "
-                    "that neighbouring "
-                    "samples overlap; choose at most aperture={:.3g}, or a wider --detector-step",
-                    RadiansToDegrees(aperture), RadiansToDegrees(layout.step), RadiansToDegrees(layout.step / 2)));
-  }
-  return layout;
 }
 
 Noise SynthesisOptions::ChosenNoise() const {

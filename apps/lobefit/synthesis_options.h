@@ -19,14 +19,11 @@ class SynthesisOptions {
 
   // A *.material.json, or a recipe (file or name) whose parameters have starts or fixed values.
   Truth LoadTruth(const std::string& source) const;
-  // Throws UsageError, also for an aperture that is wider than the layout's grid.
-  MeasurementLayout Layout(const Truth& truth) const;
+  LayoutRequest Layout() const;
   Noise ChosenNoise() const;
   std::uint64_t seed() const { return seed_; }
 
  private:
-  LayoutRequest Request() const;
-
   std::string channels_ = "R,G,B", theta_i_ = "5,15,25,30,35,40,45,50,55,60,65,70", phi_i_ = "0";
   std::string layout_ = "goniometer", noise_;
   double step_ = 10, theta_max_ = 80;

@@ -23,7 +23,8 @@ struct SynthVerb {
 int RunSynth(const SynthVerb& verb, const CommonOptions& common) {
   const Truth truth = verb.synthesis.LoadTruth(verb.source);
   const Noise noise = verb.synthesis.ChosenNoise();
-  const MeasurementLayout layout = verb.synthesis.Layout(truth);
+  const MeasurementLayout layout = MakeLayout(verb.synthesis.Layout(), truth);
+  RequireApertureWithin(layout, noise);
   const BrdfFunction brdf = BrdfOf(truth);
   Measurement measurement =
       Synthesise(layout.directions, {truth.channels, {}}, brdf, noise, verb.synthesis.seed(), SmallestAlpha(truth));

@@ -16,6 +16,10 @@
 #include "lobefit/io/read.h"
 #include "lobefit/validate/calibration.h"
 #include "lobefit/validate/calibration_json.h"
+#include "lobefit/validate/picture.h"
+#include "lobefit/validate/recovery.h"
+#include "lobefit/validate/self_check.h"
+#include "lobefit/validate/sweep.h"
 #include "lobefit/validate/truth_file.h"
 
 namespace lobefit {
@@ -27,7 +31,8 @@ struct ValidateVerb {
   std::string source;
   std::size_t trials = 200;
   std::size_t starts = 8;
-  bool draw = false;
+  bool draw = false, self_check = false;
+  std::string sweep, picture;
 };
 
 // Set by the first SIGINT: trials that run are finished and reported. The second one ends the program.
@@ -39,18 +44,64 @@ void OnInterrupt(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
-Experiment SetUpExperiment(const ValidateVerb& verb) {
-  Experiment experiment;
-  experiment.truth = verb.synthesis.LoadTruth(verb.source);
-  experiment.noise = verb.synthesis.ChosenNoise();
-  const MeasurementLayout layout = verb.synthesis.Layout(experiment.truth);
-  experiment.directions = layout.directions;
-  experiment.isotropic = layout.isotropic;
-  experiment.seed = verb.synthesis.seed();
-  experiment.recipe = verb.recipe.Choose(experiment.truth.model);
-  experiment.fit.starts = verb.starts;
-  if (verb.draw) experiment.range = MaterialRange{};
-  return experiment;
+ExperimentRequest RequestOf(const ValidateVerb& verb) {
+  ExperimentRequest request;
+  request.truth = verb.synthesis.LoadTruth(verb.source);
+  request.noise = verb.synthesis.ChosenNoise();
+  request.layout = verb.synthesis.Layout();
+  request.seed = verb.synthesis.seed();
+  request.recipe = verb.recipe.Choose(request.truth.model);
+  request.fit.starts = verb.starts;
+  if (verb.draw) request.range = MaterialRange{};
+  return request;
+}
+
+std::vector<Trial> RunWithProgress(const Experiment& experiment, std::size_t count, int threads, Progress* progress) {
+  return RunTrials(
+      experiment, count, threads, [&] { progress->Advance(); }, interrupted);
+}
+
+int RunSweep(const ValidateVerb& verb, const CommonOptions& common) {
+  Sweep sweep = ParseSweep(verb.sweep, RequestOf(verb));
+  std::vector<Experiment> experiments;
+  for (const SweepPoint& point : sweep.points) experiments.push_back(MakeExperiment(point.request));
+  std::signal(SIGINT, OnInterrupt);
+  {
+    Progress progress("validate", verb.trials * sweep.points.size());
+    for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+      sweep.points[i].trials = RunWithProgress(experiments[i], verb.trials, common.Threads(), &progress);
+      sweep.points[i].calibration = Calibrate(experiments[i], sweep.points[i].trials);
+    }
+  }
+  if (!verb.picture.empty()) DrawSweep(sweep, verb.picture);
+  if (common.json) {
+    std::string text;
+    for (std::size_t i = 0; i < sweep.points.size(); ++i)
+      text +=
+          ToJsonLine(sweep.name, sweep.points[i].value, experiments[i], sweep.points[i].calibration, common.command);
+    fmt::print("{}", text);
+  } else {
+    fmt::print("{}", ToText(sweep));
+  }
+  if (interrupted) std::fprintf(stderr, "lobefit: interrupted; points without trials show none\n");
+  return kExitDone;
+}
+
+int RunSelfCheck(const CommonOptions& common) {
+  std::signal(SIGINT, OnInterrupt);
+  std::vector<SelfCheckLine> lines;
+  {
+    Progress progress("self-check", kSelfCheckTrials);
+    lines = SelfCheck(
+        common.Threads(), [&] { progress.Advance(); }, interrupted);
+  }
+  bool passed = true;
+  for (const SelfCheckLine& line : lines) {
+    fmt::print("{}  {}: {}\n", line.passed ? "pass" : "FAIL", line.what, line.result);
+    passed = passed && line.passed;
+  }
+  fmt::print("{}\n", passed ? "PASSED" : "FAILED");
+  return passed ? kExitDone : kExitFit;
 }
 
 int Report(const Experiment& experiment, const std::vector<Trial>& trials, const CommonOptions& common) {
@@ -63,13 +114,18 @@ int Report(const Experiment& experiment, const std::vector<Trial>& trials, const
 }
 
 int RunTrialsOf(const ValidateVerb& verb, const CommonOptions& common) {
-  const Experiment experiment = SetUpExperiment(verb);
+  const Experiment experiment = MakeExperiment(RequestOf(verb));
   std::signal(SIGINT, OnInterrupt);
   std::vector<Trial> trials;
   {
     Progress progress("validate", verb.trials);
-    trials = RunTrials(
-        experiment, verb.trials, common.Threads(), [&] { progress.Advance(); }, interrupted);
+    trials = RunWithProgress(experiment, verb.trials, common.Threads(), &progress);
+  }
+  if (!verb.picture.empty()) DrawCalibration(experiment, trials, Calibrate(experiment, trials), verb.picture);
+  if (!common.json && experiment.noise == Noise{} && IsSameModel(experiment.recipe.model, experiment.truth.model)) {
+    const Recovery recovery = JudgeRecovery(experiment, trials);
+    fmt::print("{}", ToText(recovery, experiment, trials));
+    return recovery.silent == 0 && recovery.trials > 0 ? kExitDone : kExitFit;
   }
   return Report(experiment, trials, common);
 }
@@ -115,16 +171,27 @@ std::function<int()> SetUpValidate(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<ValidateVerb>();
   app->add_option("SOURCE", verb->source,
                   "a *.material.json, a recipe (.toml or name) whose parameters have starts or fixed values, or a file "
-                  "of `lobefit synth`")
-      ->required();
+                  "of `lobefit synth`");
   app->add_option("--trials", verb->trials, "measurements to make and fit (default 200)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
   app->add_option("--starts", verb->starts, "descents of each fit from the best-ranked starts (default 8)")
       ->check(CLI::Range(1, 100000));
+  app->add_option(
+      "--sweep", verb->sweep,
+      "NAME=VALUE,VALUE,...: the same at each value of a parameter of the truth, a noise term, alpha, ratio, "
+      "tilt, incidences, azimuths, detector-step, metric or masking");
+  app->add_option("--picture", verb->picture, "draw the result as a PNG file");
+  app->add_flag("--self-check", verb->self_check, "a validation of this installation, without a source");
   app->add_flag("--draw", verb->draw, "every trial draws a material of the source's kind");
   verb->recipe.AddTo(app);
   verb->synthesis.AddTo(app);
-  return [=] { return IsMeasurementFile(verb->source) ? RunFile(*verb, *common) : RunTrialsOf(*verb, *common); };
+  return [=] {
+    if (verb->self_check) return RunSelfCheck(*common);
+    if (verb->source.empty())
+      throw UsageError("validate needs a SOURCE or --self-check; see `lobefit validate --help`");
+    if (IsMeasurementFile(verb->source)) return RunFile(*verb, *common);
+    return verb->sweep.empty() ? RunTrialsOf(*verb, *common) : RunSweep(*verb, *common);
+  };
 }
 
 }  // namespace lobefit

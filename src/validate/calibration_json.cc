@@ -28,9 +28,7 @@ Json ToObject(const IntervalCalibration& interval) {
           {"within_95", ToObject(interval.within_95)}};
 }
 
-}  // namespace
-
-std::string ToJson(const Experiment& experiment, const Calibration& calibration, const std::string& command) {
+Json Document(const Experiment& experiment, const Calibration& calibration, const std::string& command) {
   Json entries = Json::object();
   for (const EntryCalibration& entry : calibration.entries) {
     entries[entry.entry.name] = {{"unit", entry.entry.unit},
@@ -44,7 +42,7 @@ std::string ToJson(const Experiment& experiment, const Calibration& calibration,
                                  {"independent", ToObject(entry.independent)},
                                  {"clustered", ToObject(entry.clustered)}};
   }
-  const Json json = {
+  return {
       {"format", "lobefit validation"},
       {"format_version", "1.0"},
       {"version", Version()},
@@ -69,7 +67,20 @@ std::string ToJson(const Experiment& experiment, const Calibration& calibration,
       {"metric", NameOf(MetricChoices(), experiment.recipe.metric)},
       {"parameters", entries},
   };
-  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+std::string ToJson(const Experiment& experiment, const Calibration& calibration, const std::string& command) {
+  return Document(experiment, calibration, command).dump(2) + "\n";
+}
+
+std::string ToJsonLine(const std::string& sweep, const std::string& value, const Experiment& experiment,
+                       const Calibration& calibration, const std::string& command) {
+  Json line = Document(experiment, calibration, command);
+  line["sweep"] = sweep;
+  line["value"] = value;
+  return line.dump() + "\n";
 }
 
 }  // namespace lobefit

@@ -10,4 +10,8 @@ namespace lobefit {
 // Indented by two blanks; NaN as null. `command` is the command line.
 std::string ToJson(const Experiment& experiment, const Calibration& calibration, const std::string& command);
 
+// One point of a sweep on one line, with members "sweep" and "value".
+std::string ToJsonLine(const std::string& sweep, const std::string& value, const Experiment& experiment,
+                       const Calibration& calibration, const std::string& command);
+
 }  // namespace lobefit

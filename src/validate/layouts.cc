@@ -60,7 +60,8 @@ MeasurementLayout Merl(const LayoutRequest& request, const Truth& truth) {
 MeasurementLayout Utia(const LayoutRequest&, const Truth&) {
   MeasurementLayout layout = {{}, false, DegreesToRadians(7.5)};
   for (std::size_t i = 0; i < kUtiaDirections; ++i) {
-    for (std::size_t o = 0; o < kUtiaDirections; ++o) layout.directions.Add(UtiaDirection(i), UtiaDirection(o));
+    for (std::size_t o = 0; o < kUtiaDirections; ++o)
+      layout.directions.Add(kUtiaGrid.Direction(i), kUtiaGrid.Direction(o));
   }
   return layout;
 }
@@ -171,6 +172,15 @@ MeasurementLayout MakeLayout(const LayoutRequest& request, const Truth& truth) {
   if (std::filesystem::exists(request.name, error)) return OfFile(request.name);
   throw UsageError(fmt::format("layout '{}' is neither known nor a measurement file{}; allowed: {}, or a file",
                                Excerpt(request.name), DidYouMean(request.name, names), Join(names)));
+}
+
+void RequireApertureWithin(const MeasurementLayout& layout, const Noise& noise) {
+  if (2 * noise.aperture > layout.step * (1 + 1e-9)) {
+    throw UsageError(fmt::format(
+        "an aperture of half angle {:.3g} degrees is wider than the step of the grid, {:.3g} degrees, so that "
+        "neighbouring samples overlap; choose at most aperture={:.3g}, or a wider --detector-step",
+        RadiansToDegrees(noise.aperture), RadiansToDegrees(layout.step), RadiansToDegrees(layout.step / 2)));
+  }
 }
 
 }  // namespace lobefit

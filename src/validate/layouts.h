@@ -36,4 +36,7 @@ struct MeasurementLayout {
 // and for an isotropic layout of an anisotropic truth, InputError for a file that cannot be read.
 MeasurementLayout MakeLayout(const LayoutRequest& request, const Truth& truth);
 
+// Throws UsageError where the detector's disc is wider than the layout's step.
+void RequireApertureWithin(const MeasurementLayout& layout, const Noise& noise);
+
 }  // namespace lobefit
