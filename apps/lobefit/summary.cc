@@ -70,12 +70,6 @@ std::string Summary(const Material& material) {
                         material.minima[1].cost / material.minima[0].cost);
   }
   for (const std::string& remark : material.remarks) text += "Note: " + remark + '\n';
-  if (material.misfit.flagged) {
-    text += fmt::format(
-        "Misfit: the residuals are structured: their mean over {} is {:.2f} of their spread, which noise explains with "
-        "probability {:.1g}; the model is not quite the one behind the data, and its intervals are too narrow\n",
-        material.misfit.where, material.misfit.size, material.misfit.probability);
-  }
   for (const std::string& direction : material.degenerate) text += "Not determined: " + direction + '\n';
   if (!material.termination.converged) text += "NOT CONVERGED: " + material.termination.message + '\n';
   return text;

@@ -2,15 +2,23 @@
 // not the one that made the data, whatever the standard errors say.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "lobefit/fit/layout.h"
 #include "lobefit/fit/problem.h"
-#include "lobefit/material/material.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/measurement/measurement.h"
 
 namespace lobefit {
+
+struct Misfit {
+  bool tested = false;
+  bool flagged = false;
+  double probability = 1;  // of a bin so far from zero if the model were right
+  double size = 0;         // mean residual of that bin over the root mean square of all residuals
+  std::string where;       // that bin, in words
+};
 
 // Samples are sorted into bins: by the distance of their half vector from the first lobe's centre in its slope space
 // (in widths of the lobe), by its azimuth there, by theta_d, by theta_i. Under the right model the mean residual of a
@@ -18,8 +26,12 @@ namespace lobefit {
 // from incidence to incidence is not taken for structure; with fewer than 6 incidences samples count as independent.
 // The probability is that of the largest of these t statistics [Bonferroni], and the flag is raised below 1 %.
 //
-// At most 100 000 samples are looked at. Not tested: fewer than 50 samples; residuals that are rounding.
+// Of large measurements an even part is looked at. Not tested: fewer than 50 samples; residuals that are rounding.
 Misfit TestMisfit(const Problem& problem, const Layout& layout, const std::vector<double>& u, const Samples& samples,
                   const Incidences& incidences);
+
+// The remark that a document carries where the flag is raised; it begins with kMisfitRemark.
+inline constexpr const char* kMisfitRemark = "misfit: ";
+std::string ToRemark(const Misfit& misfit);
 
 }  // namespace lobefit

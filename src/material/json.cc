@@ -84,12 +84,6 @@ Json QualityToJson(const Material& material) {
           {"set_aside", material.set_aside},
           {"cost", Number(material.cost)},
           {"errors", errors},
-          {"misfit",
-           {{"tested", material.misfit.tested},
-            {"flagged", material.misfit.flagged},
-            {"probability", Number(material.misfit.probability)},
-            {"size", Number(material.misfit.size)},
-            {"where", material.misfit.where}}},
           {"remarks", material.remarks}};
 }
 
@@ -207,13 +201,6 @@ void ReadRest(const Reader& reader, Material* material) {
   material->set_aside = reader.Get<std::map<std::string, std::size_t>>(quality, "set_aside");
   material->cost = reader.Get<double>(quality, "cost");
   material->remarks = reader.Get<std::vector<std::string>>(quality, "remarks");
-  // Documents of the first version do not have it.
-  if (quality.contains("misfit")) {
-    const Json& misfit = reader.Member(quality, "misfit");
-    material->misfit = {reader.Get<bool>(misfit, "tested"), reader.Get<bool>(misfit, "flagged"),
-                        reader.Get<double>(misfit, "probability"), reader.Get<double>(misfit, "size"),
-                        reader.Get<std::string>(misfit, "where")};
-  }
   for (const auto& [metric, rms] : reader.Member(quality, "errors").items()) {
     material->errors.push_back(
         {metric, rms.is_number() ? rms.get<double>() : std::numeric_limits<double>::quiet_NaN()});

@@ -38,15 +38,6 @@ struct Minimum {
   std::size_t starts = 0;                                  // number of starts that ended there
 };
 
-// Whether the residuals are structured: bins of samples whose mean residual noise does not explain.
-struct Misfit {
-  bool tested = false;
-  bool flagged = false;
-  double probability = 1;  // of a bin so far from zero if the model were right
-  double size = 0;         // mean residual of that bin over the root mean square of all residuals
-  std::string where;       // that bin, in words
-};
-
 struct Termination {
   bool converged = false;
   bool determined = false;
@@ -75,7 +66,6 @@ struct Material {
   // Directions in parameter space that the data do not determine, in words.
   std::vector<std::string> degenerate;
   std::vector<std::string> remarks;
-  Misfit misfit;
 
   std::size_t samples_used = 0, samples_read = 0;
   std::map<std::string, std::size_t> set_aside;

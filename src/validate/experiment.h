@@ -43,7 +43,6 @@ struct Trial {
   double slope_difference = 0;  // of the fitted lobes from the true ones; NaN as above
   std::size_t minima = 0, samples = 0, incidences = 0;
   bool misfit = false;  // flagged
-  double misfit_probability = 1;
   double seconds = 0;
 };
 

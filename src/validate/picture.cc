@@ -108,6 +108,7 @@ void DrawCoverage(Canvas* canvas, const Box& frame, const Calibration& calibrati
       Whisker(canvas, axes, x, 100 * share.low, 100 * share.value, 100 * share.high, style::kBlue);
     TextStyle label = style::Tick(Align::kCenter);
     label.size = 9;
+    label.markup = false;
     label.baseline = Baseline::kTop;
     // Alternating heights, so that names do not meet.
     canvas->Text({axes.MapX(x), frame.bottom() + (e % 2 == 0 ? 5 : 18)}, entry.entry.name, label);
