@@ -10,7 +10,7 @@
 namespace lobefit {
 
 std::vector<std::string> ParseReportFormats(const std::string& text) {
-  const std::vector<std::string> allowed = {"png", "html"};
+  const std::vector<std::string> allowed = {"png", "html", "exr"};
   std::vector<std::string> formats;
   for (const std::string_view field : Split(text, ',')) {
     const std::string format(Trim(field));
@@ -26,18 +26,20 @@ std::vector<std::string> ParseReportFormats(const std::string& text) {
 std::string WriteReports(const std::vector<std::string>& formats, const Material& material,
                          const Measurement& measurement, const std::filesystem::path& picture,
                          const ReportOptions& options) {
+  ReportPaths paths;
   std::string lines;
   for (const std::string& format : formats) {
+    std::filesystem::path path = picture;
     if (format == "png") {
-      WriteReportPng(material, measurement, picture, options);
-      lines += fmt::format("Picture: {}\n", picture.string());
-    } else {
-      std::filesystem::path page = picture;
-      page.replace_extension(".html");
-      WriteReportHtml(material, measurement, page, options);
-      lines += fmt::format("Page:    {}\n", page.string());
+      paths.png = path;
+      lines += fmt::format("Picture: {}\n", path.string());
+      continue;
     }
+    path.replace_extension(format);
+    (format == "html" ? paths.html : paths.exr) = path;
+    lines += fmt::format("{} {}\n", format == "html" ? "Page:   " : "Maps:   ", path.string());
   }
+  WriteReport(material, measurement, paths, options);
   return lines;
 }
 

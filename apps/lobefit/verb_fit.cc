@@ -1,4 +1,4 @@
-// lobefit fit: a measurement file becomes NAME.material.json and NAME.report.png.
+// lobefit fit: a measurement file becomes NAME.material.json, NAME.report.png and NAME.report.html.
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +8,7 @@
 #include "recipe_options.h"
 #include "report_formats.h"
 #include "summary.h"
+#include "terminal_plot.h"
 #include "verb.h"
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ struct FitVerb {
   MeasurementOptions measurement;
   RecipeOptions recipe;
   FitOptions fit;
-  std::string file, out = ".", name, format = "png";
+  std::string file, out = ".", name, format = "png,html";
   bool no_report = false;
 };
 
@@ -88,7 +89,8 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   if (common.json) {
     fmt::print("{}", ToJson(material));
   } else {
-    fmt::print("{}Result:  {}\n", Summary(material), document.string());
+    fmt::print("{}{}", Summary(material), WorstSlicePlot(material, measurement, TerminalColumns()));
+    fmt::print("Result:  {}\n", document.string());
     fmt::print("{}", pictures);
   }
   return Judge(material);
@@ -101,8 +103,10 @@ std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common) {
   app->add_option("FILE", verb->file, "measurement file")->required();
   app->add_option("--out", verb->out, "folder of the results (default: the current one)");
   app->add_option("--name", verb->name, "NAME of the results (default: the file's name without its ending)");
-  app->add_option("--format", verb->format, "formats of the report: png (default), html, or both with a comma between");
-  app->add_flag("--no-report", verb->no_report, "write no picture");
+  app->add_option("--format", verb->format,
+                  "formats of the report, with commas between: png, html, exr (the maps behind the pictures); default "
+                  "png,html");
+  app->add_flag("--no-report", verb->no_report, "write no picture and no page");
   app->add_option("--starts", verb->fit.starts,
                   "descents from the best-ranked starts (default 8; five times as many for several lobes)")
       ->check(CLI::Range(1, 100000));

@@ -14,6 +14,7 @@
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/measurement/statistics.h"
+#include "lobefit/report/coverage.h"
 
 namespace lobefit {
 namespace {
@@ -165,6 +166,8 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
   auto statistics = std::make_shared<bool>(false);
   app->add_flag("--statistics", *statistics,
                 "albedo and reciprocity for a large table too (small ones show them anyway)");
+  auto picture = std::make_shared<std::string>();
+  app->add_option("--png", *picture, "also write where the samples lie over the hemisphere to this picture");
   options->AddTo(app);
   return [=] {
     const Measurement measurement = options->Load(*file);
@@ -173,7 +176,9 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
       description.statistics = Describe(
           measurement, measurement.conventions.count("channels") == 0 ? TabulatedBrdf(*file, measurement) : nullptr);
     }
+    if (!picture->empty()) WriteCoveragePng(measurement, *picture);
     fmt::print("{}\n", common->json ? ToJson(measurement, description) : ToText(measurement, description));
+    if (!picture->empty() && !common->json) fmt::print("Picture: {}\n", *picture);
     return 0;
   };
 }

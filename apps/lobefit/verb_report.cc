@@ -49,7 +49,7 @@ std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
   app->add_option("MATERIAL", verb->material, "a *.material.json")->required();
   app->add_option("MEASUREMENT", verb->file, "the measurement file that it was fitted to")->required();
   app->add_option("--out", verb->out, "the picture (default: NAME.report.png beside the material)");
-  app->add_option("--format", verb->format, "png (default), html, or both with a comma between");
+  app->add_option("--format", verb->format, "png (default), html, exr (the maps behind the pictures), or several with commas between");
   app->add_option("--scale", verb->scale, "pixels to one unit of the page, which is 1320 units wide (default 2)")
       ->check(CLI::Range(0.25, 4.0));
   verb->measurement.AddTo(app);

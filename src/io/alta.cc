@@ -16,6 +16,8 @@ namespace lobefit {
 namespace {
 
 constexpr double kLargestCoordinate = 2 * kPi + 1e-6;
+// Of the narrowest interval; a weight must not vanish in the square of a wide one.
+constexpr double kLeastWeight = 1e-12;
 
 // Half-widths of the confidence intervals, squared, until it is known how the columns are meant.
 class Intervals {
@@ -74,7 +76,7 @@ class Intervals {
     std::size_t without = 0;
     for (double& v : variance) {
       without += v > 0 ? 0 : 1;
-      v = smallest / std::max(v, smallest);
+      v = std::max(smallest / std::max(v, smallest), kLeastWeight);
     }
     if (without > 0) {
       measurement->remarks.push_back(std::to_string(without) +

@@ -214,9 +214,19 @@ class CsvReader {
     } else {
       std::size_t begin = 0;
       while (true) {
-        const std::size_t end = line.find(header_.separator, begin);
-        take(line.substr(begin, end - begin));
-        if (end == std::string_view::npos) break;
+        // Most fields are plain numbers that fill their field: one pass over the characters.
+        std::size_t length = 0;
+        std::optional<double> plain;
+        if (column < fields_.size() && layout_.is_read[column]) plain = ParsePlainDecimal(line.substr(begin), &length);
+        std::size_t end = begin + length;
+        if (plain && (end == line.size() || line[end] == header_.separator)) {
+          fields_[column++] = *plain;
+          if (end == line.size()) break;
+        } else {
+          end = line.find(header_.separator, begin);
+          take(line.substr(begin, end - begin));
+          if (end == std::string_view::npos) break;
+        }
         begin = end + 1;
       }
     }

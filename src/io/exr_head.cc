@@ -29,17 +29,74 @@ std::optional<std::string_view> Word(std::string_view bytes, std::size_t* at) {
   return word;
 }
 
-// A list of strings, each behind its length.
-void CheckStrings(const InputFile& file, std::size_t at, std::size_t end) {
+// OpenEXR reads these types by their own size, whatever the attribute states: where the two differ it goes on in the
+// wrong place.
+std::optional<std::size_t> SizeOfType(std::string_view type) {
+  struct Fixed {
+    std::string_view type;
+    std::size_t bytes;
+  };
+  static constexpr std::array<Fixed, 24> kFixed = {{{"box2f", 16},
+                                                    {"box2i", 16},
+                                                    {"chromaticities", 32},
+                                                    {"compression", 1},
+                                                    {"deepImageState", 1},
+                                                    {"double", 8},
+                                                    {"envmap", 1},
+                                                    {"float", 4},
+                                                    {"int", 4},
+                                                    {"keycode", 28},
+                                                    {"lineOrder", 1},
+                                                    {"m33d", 72},
+                                                    {"m33f", 36},
+                                                    {"m44d", 128},
+                                                    {"m44f", 64},
+                                                    {"rational", 8},
+                                                    {"tiledesc", 9},
+                                                    {"timecode", 8},
+                                                    {"v2d", 16},
+                                                    {"v2f", 8},
+                                                    {"v2i", 8},
+                                                    {"v3d", 24},
+                                                    {"v3f", 12},
+                                                    {"v3i", 12}}};
+  for (const Fixed& fixed : kFixed) {
+    if (fixed.type == type) return fixed.bytes;
+  }
+  return std::nullopt;
+}
+
+// Whether a list of strings, each behind its length, fills [at, end).
+bool AreStrings(std::string_view bytes, std::size_t at, std::size_t end) {
   while (end - at >= 4) {
-    const std::size_t length = LoadU32(file.bytes, at);
-    if (length > end - at - 4) {
-      FailAtByte(file, at,
-                 "a string of a list claims " + std::to_string(length) + " bytes, but the list has only " +
-                     std::to_string(end - at - 4) + " more; fetch the file again");
-    }
+    const std::size_t length = LoadU32(bytes, at);
+    if (length > end - at - 4) return false;
     at += 4 + length;
   }
+  return at == end;
+}
+
+// Whether names with 16 bytes each and an empty name at the end fill [at, end).
+bool AreChannels(std::string_view bytes, std::size_t at, std::size_t end) {
+  constexpr std::size_t kChannelBytes = 16;
+  while (at < end) {
+    const std::optional<std::string_view> name = Word(bytes, &at);
+    if (!name) return false;
+    if (name->empty()) return at == end;
+    at += kChannelBytes;
+  }
+  return false;
+}
+
+bool FitsItsType(std::string_view bytes, std::string_view type, std::size_t at, std::size_t size) {
+  if (const std::optional<std::size_t> fixed = SizeOfType(type)) return size == *fixed;
+  if (type == "stringvector") return AreStrings(bytes, at, at + size);
+  if (type == "chlist") return AreChannels(bytes, at, at + size);
+  if (type == "floatvector") return size % 4 == 0;
+  if (type == "idmanifest") return size >= 4;
+  if (type != "preview") return true;
+  const std::uint64_t pixels = size < 8 ? 0 : std::uint64_t{LoadU32(bytes, at)} * LoadU32(bytes, at + 4);
+  return size >= 8 && pixels <= size && size == 8 + 4 * pixels;
 }
 
 struct Part {
@@ -80,7 +137,11 @@ bool CheckPart(const InputFile& file, std::size_t* at) {
                      " bytes, but the file has only " + std::to_string(file.bytes.size() - data) +
                      " more; fetch the file again");
     }
-    if (*type == "stringvector") CheckStrings(file, data, data + size);
+    if (!FitsItsType(file.bytes, *type, data, size)) {
+      FailAtByte(file, *at,
+                 "attribute '" + Excerpt(*name) + "' of type " + Excerpt(*type) + " states " + std::to_string(size) +
+                     " bytes, which its content does not fill; fetch the file again");
+    }
     const auto number = [&](std::size_t k) {
       return std::int64_t{static_cast<std::int32_t>(LoadU32(file.bytes, data + 4 * k))};
     };

@@ -1,5 +1,8 @@
 #include "lobefit/io/write.h"
 
+#include <array>
+#include <cmath>
+#include <limits>
 #include <memory>
 
 #include "lobefit/base/error.h"
@@ -12,6 +15,7 @@
 #include "lobefit/io/write_merl.h"
 #include "lobefit/io/write_mountain.h"
 #include "lobefit/io/write_tensor_tree.h"
+#include "lobefit/math/directions.h"
 #include "lobefit/measurement/synthesis.h"
 
 namespace lobefit {
@@ -59,8 +63,62 @@ Paths WriteMountainFormat(const WriteSource& source, const WriteOptions&, const 
   return WriteMountain(Tabulated(source), path);
 }
 
+// All light (but that from the normal) at one azimuth: nothing speaks against an isotropic surface.
+bool HasOneAzimuth(const Samples& samples) {
+  std::optional<double> azimuth;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (std::hypot(samples.wi_x[i], samples.wi_y[i]) < 0.02) continue;
+    const double own = std::atan2(samples.wi_y[i], samples.wi_x[i]);
+    if (!azimuth) azimuth = own;
+    if (std::fabs(std::remainder(own - *azimuth, 2 * kPi)) > 0.01) return false;
+  }
+  return true;
+}
+
+// The samples of one azimuth as those of an isotropic surface. A table over (theta_h, theta_d, phi_d) can be filled
+// from them only where they come near every part of it; in a plane they do not.
+BrdfFunction IsotropicFunction(const Measurement& measurement) {
+  constexpr double kNear = 10 * kPi / 180, kGrazing = 75 * kPi / 180, kLeastShare = 0.9;
+  constexpr int kSteps = 12;
+  Measurement isotropic = measurement;
+  isotropic.isotropic = true;
+  const Interpolator samples(isotropic);
+  std::array<int, 3> near = {}, all = {};  // by thirds of theta_d
+  for (int cell = 0; cell < kSteps * kSteps * kSteps; ++cell) {
+    const auto at = [&](int index) { return (index % kSteps + 0.5) / kSteps; };
+    const int d = cell / kSteps % kSteps;
+    Vec3 wi, wo;
+    FromHalfDifference({at(cell / kSteps / kSteps) * kPi / 2, 0, at(d) * kPi / 2, at(cell) * kPi}, &wi, &wo);
+    if (wi.z < std::cos(kGrazing) || wo.z < std::cos(kGrazing)) continue;
+    const auto third = static_cast<std::size_t>(3 * d / kSteps);
+    ++all[third];
+    near[third] += samples.Nearest(wi, wo, kNear) || samples.Nearest(wo, wi, kNear) ? 1 : 0;
+  }
+  const int all_cells = all[0] + all[1] + all[2], near_cells = near[0] + near[1] + near[2];
+  if (near_cells < kLeastShare * all_cells) {
+    std::string shares;
+    for (std::size_t third = 0; third < 3; ++third) {
+      shares += (third == 0 ? "" : ", ") + std::to_string(30 * third) + " to " + std::to_string(30 * third + 30) +
+                ": " + std::to_string(100 * near[third] / std::max(1, all[third])) + " %";
+    }
+    throw UsageError(
+        "a MERL table cannot be filled from this measurement: light from one azimuth is taken as that of an "
+        "isotropic surface, but only " +
+        std::to_string(100 * near_cells / all_cells) +
+        " % of the table (to 75 degrees) lies within 10 degrees of a sample; by theta_d in degrees, " + shares +
+        "; measure more incidences and out of their plane, or write it as alta or csv");
+  }
+  return Interpolate(isotropic);
+}
+
 Paths WriteMerlFormat(const WriteSource& source, const WriteOptions& options, const Path& path) {
-  WriteMerl(FunctionOf(source), source.channels, {options.merl_cell, 1e-3}, path);
+  const bool by_azimuth =
+      source.measurement != nullptr && !source.isotropic && HasOneAzimuth(source.measurement->samples);
+  // By construction the function does not depend on the azimuth, whatever the interpolation makes of the mirror
+  // direction, where phi_d is not defined.
+  const double tolerance = by_azimuth ? std::numeric_limits<double>::infinity() : 1e-3;
+  WriteMerl(by_azimuth ? IsotropicFunction(*source.measurement) : FunctionOf(source), source.channels,
+            {options.merl_cell, tolerance}, path);
   return {path};
 }
 

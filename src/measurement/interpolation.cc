@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "lobefit/base/parallel.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {
@@ -224,22 +225,32 @@ BrdfFunction Interpolate(const Measurement& measurement) {
   return [interpolator](const Vec3& wi, const Vec3& wo, double* values) { interpolator->Evaluate(wi, wo, values); };
 }
 
+// Samples that one thread takes at a time.
+constexpr std::size_t kPiece = 256;
+
 Difference CompareWith(const Measurement& measurement, const BrdfFunction& brdf, std::size_t most) {
   const Samples& samples = measurement.samples;
   const std::size_t channels = measurement.channels.size();
-  std::vector<double> scale(channels, 0.0), values(channels), differences;
+  std::vector<double> scale(channels, 0.0);
   for (std::size_t c = 0; c < channels; ++c) {
     for (const double value : samples.values[c]) scale[c] = std::max(scale[c], 1e-3 * std::fabs(value));
   }
   const std::size_t step = std::max<std::size_t>(1, samples.size() / std::max<std::size_t>(1, most));
-  for (std::size_t i = 0; i < samples.size(); i += step) {
-    brdf(samples.wi(i), samples.wo(i), values.data());
-    for (std::size_t c = 0; c < channels; ++c) {
-      const double reference = samples.values[c][i];
-      const double relative_to = std::max(std::fabs(reference), scale[c]);
-      if (relative_to > 0) differences.push_back(std::fabs(values[c] - reference) / relative_to);
+  const std::size_t count = (samples.size() + step - 1) / step;
+  std::vector<double> differences(count * channels, -1.0);  // negative: nothing to relate to
+  ParallelFor((count + kPiece - 1) / kPiece, HardwareThreads(), [&](std::size_t piece) {
+    std::vector<double> values(channels);
+    for (std::size_t k = piece * kPiece; k < std::min(count, (piece + 1) * kPiece); ++k) {
+      const std::size_t i = k * step;
+      brdf(samples.wi(i), samples.wo(i), values.data());
+      for (std::size_t c = 0; c < channels; ++c) {
+        const double reference = samples.values[c][i];
+        const double relative_to = std::max(std::fabs(reference), scale[c]);
+        if (relative_to > 0) differences[k * channels + c] = std::fabs(values[c] - reference) / relative_to;
+      }
     }
-  }
+  });
+  std::erase_if(differences, [](double difference) { return difference < 0; });
   Difference result;
   result.compared = differences.size();
   if (differences.empty()) return result;

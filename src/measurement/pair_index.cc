@@ -20,33 +20,45 @@ std::uint64_t Hash(const std::array<std::int32_t, 6>& key) {
 // Components of unit vectors: 1e9 fits 32 bits.
 std::int32_t Rounded(double x) { return static_cast<std::int32_t>(std::lrint(x * 1e9)); }
 
+std::array<std::int32_t, 6> KeyOf(const Vec3& wi, const Vec3& wo) {
+  return {Rounded(wi.x), Rounded(wi.y), Rounded(wi.z), Rounded(wo.x), Rounded(wo.y), Rounded(wo.z)};
+}
+
 }  // namespace
 
 PairIndex::PairIndex(std::size_t expected_pairs) {
   keys_.reserve(expected_pairs);
-  slots_.resize(std::bit_ceil(std::max<std::size_t>(16, 2 * expected_pairs)), 0);
+  slots_.resize(std::bit_ceil(std::max<std::size_t>(16, 2 * expected_pairs)));
 }
 
 std::size_t PairIndex::FindOrAdd(const Vec3& wi, const Vec3& wo) {
   if (2 * (keys_.size() + 1) > slots_.size()) Grow();
-  const Key key = {Rounded(wi.x), Rounded(wi.y), Rounded(wi.z), Rounded(wo.x), Rounded(wo.y), Rounded(wo.z)};
-  std::size_t slot = Hash(key) & (slots_.size() - 1);
-  while (slots_[slot] != 0) {
-    if (keys_[slots_[slot] - 1] == key) return slots_[slot] - 1;
+  const Key key = KeyOf(wi, wo);
+  const std::uint64_t hash = Hash(key);
+  const auto tag = static_cast<std::uint32_t>(hash >> 32U);
+  std::size_t slot = hash & (slots_.size() - 1);
+  while (slots_[slot].number != 0) {
+    if (slots_[slot].tag == tag && keys_[slots_[slot].number - 1] == key) return slots_[slot].number - 1;
     slot = (slot + 1) & (slots_.size() - 1);
   }
   keys_.push_back(key);
-  slots_[slot] = static_cast<std::uint32_t>(keys_.size());
+  slots_[slot] = {static_cast<std::uint32_t>(keys_.size()), tag};
   return keys_.size() - 1;
 }
 
+void PairIndex::Prefetch(const Vec3& wi, const Vec3& wo) const {
+  __builtin_prefetch(&slots_[Hash(KeyOf(wi, wo)) & (slots_.size() - 1)], 1);
+}
+
+void PairIndex::Put(std::uint64_t hash, std::uint32_t number) {
+  std::size_t slot = hash & (slots_.size() - 1);
+  while (slots_[slot].number != 0) slot = (slot + 1) & (slots_.size() - 1);
+  slots_[slot] = {number, static_cast<std::uint32_t>(hash >> 32U)};
+}
+
 void PairIndex::Grow() {
-  slots_.assign(2 * slots_.size(), 0);
-  for (std::size_t i = 0; i < keys_.size(); ++i) {
-    std::size_t slot = Hash(keys_[i]) & (slots_.size() - 1);
-    while (slots_[slot] != 0) slot = (slot + 1) & (slots_.size() - 1);
-    slots_[slot] = static_cast<std::uint32_t>(i + 1);
-  }
+  slots_.assign(2 * slots_.size(), {});
+  for (std::size_t i = 0; i < keys_.size(); ++i) Put(Hash(keys_[i]), static_cast<std::uint32_t>(i + 1));
 }
 
 }  // namespace lobefit

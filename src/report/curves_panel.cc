@@ -24,13 +24,14 @@ struct Curves {
   Slices slices;
   std::vector<const Slice*> chosen;
   std::size_t rows = 0, columns = 0;
-  std::size_t azimuths = 1;  // 1: not worth a label
-  ResidualBand band;
-  Range values;               // of f_r
-  double ratio = 1;           // the strips reach from 1 / ratio to ratio
-  std::size_t not_shown = 0;  // points of the chosen slices below the scale
+  std::size_t azimuths = 1;         // 1: not worth a label
+  std::vector<ResidualBand> bands;  // one for each of data.shown_channels
+  Range values;                     // of f_r
+  double ratio = 1;                 // the strips reach from 1 / ratio to ratio
+  std::size_t not_shown = 0;        // points of the chosen slices below the scale
 
-  explicit Curves(const ReportData& d) : data(d), slices(GatherSlices(d.measurement, d.staying)), band(d) {
+  explicit Curves(const ReportData& d) : data(d), slices(GatherSlices(d.measurement, d.staying)) {
+    for (const std::size_t channel : d.shown_channels) bands.emplace_back(d, channel);
     chosen = ChooseSlices(slices, kMostRows, kMostColumns, &rows, &columns);
     for (const Slice* slice : chosen) {
       if (slice != nullptr && std::fabs(slice->phi - chosen.front()->phi) > 0.01) azimuths = 2;
@@ -133,14 +134,15 @@ void DrawSlice(const Curves& curves, const Slice& slice, Canvas* canvas, const B
     const double first = RadiansToDegrees(slice.points.front().theta) - 1,
                  last = RadiansToDegrees(slice.points.back().theta) + 1;
     const double mute = data.shown_channels.size() > 1 ? 0.12 : 0.2;
-    for (const std::size_t c : data.shown_channels) {
+    for (std::size_t shown = 0; shown < data.shown_channels.size(); ++shown) {
+      const std::size_t c = data.shown_channels[shown];
       std::vector<Point> outline;
       std::vector<Point> back;
       for (std::size_t k = 0; k < curve.degrees.size(); ++k) {
         const double f = curve.f_r[c][k];
         // No residual is known where the slice has no samples.
         if (!(f > 0) || curve.degrees[k] < first || curve.degrees[k] > last) continue;
-        const ResidualBand::Quantiles q = curves.band.At(curve.theta_h[k]);
+        const ResidualBand::Quantiles q = curves.bands[shown].At(curve.theta_h[k]);
         const double x = curve.degrees[k], floor = curves.values.low * 1e-2;
 
         outline.push_back(axes.Map(x, std::max(f * std::exp(q.high), floor)));

@@ -9,8 +9,8 @@
 namespace lobefit {
 
 // Directional albedo, integral of f_r cos(theta_o) over wo, a channel; wi away from the surface. The specular part is
-// integrated over the lobe's own slopes (points where the visible facets are), 160 x 64 points a lobe; a Lambertian part
-// exactly, diffuse microfacets over 24 x 48 directions.
+// integrated over the lobe's own slopes (points where the visible facets are), 160 x 64 points a lobe; a Lambertian
+// part exactly, diffuse microfacets over 24 x 48 directions.
 std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
                                       const Vec3& wi);
 

@@ -1,15 +1,11 @@
 // The page: the panels as pictures, and the same data live.
 #include <memory>
-#include <optional>
 
 #include "lobefit/base/base64.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"
 #include "lobefit/report/html_data.h"
 #include "lobefit/report/page.h"
 #include "lobefit/report/png.h"
-#include "lobefit/report/report.h"
 #include "lobefit/report/web_text.h"
 
 namespace lobefit {
@@ -30,18 +26,16 @@ struct Figure {
   bool wide = true;
 };
 
-std::vector<Figure> DrawFigures(const ReportData& data, const std::shared_ptr<Fonts>& fonts, std::size_t most_bytes) {
-  std::vector<std::optional<Panel>> panels(PanelMakers().size());
-  ParallelFor(panels.size(), data.threads, [&](std::size_t k) { panels[k] = PanelMakers()[k](data); });
+std::vector<Figure> DrawFigures(const std::vector<Panel>& panels, const std::shared_ptr<Fonts>& fonts,
+                                std::size_t most_bytes) {
   std::vector<Figure> figures;
   // Sharp on dense screens, unless the page would grow too large.
   for (const double scale : {1.5, 1.0}) {
     figures.clear();
     std::size_t bytes = 0;
-    for (const std::optional<Panel>& panel : panels) {
-      if (!panel) continue;
-      const Canvas canvas = DrawPanelAlone(*panel, panel->wide ? 850 : 430, scale, fonts);
-      figures.push_back({panel->id, panel->title, EncodePng(canvas.pixels(), 0), panel->wide});
+    for (const Panel& panel : panels) {
+      const Canvas canvas = DrawPanelAlone(panel, panel.wide ? 850 : 430, scale, fonts);
+      figures.push_back({panel.id, panel.title, EncodePng(canvas.pixels(), 0), panel.wide});
       bytes += figures.back().png.size();
     }
     if (bytes <= most_bytes) break;
@@ -57,7 +51,7 @@ std::string FigureHtml(const Figure& figure) {
 
 }  // namespace
 
-std::string ReportHtml(const ReportData& data, const std::shared_ptr<Fonts>& fonts) {
+std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels, const std::shared_ptr<Fonts>& fonts) {
   const Material& material = data.material;
   const std::string file = material.source.file.empty() ? data.measurement.source : material.source.file;
   const std::string title = HtmlText(std::filesystem::path(file).filename().string());
@@ -97,19 +91,13 @@ std::string ReportHtml(const ReportData& data, const std::shared_ptr<Fonts>& fon
 <div class="panels">
 )";
   std::string wide, narrow;
-  for (const Figure& figure : DrawFigures(data, fonts, 1500000)) (figure.wide ? wide : narrow) += FigureHtml(figure);
+  for (const Figure& figure : DrawFigures(panels, fonts, 1500000)) (figure.wide ? wide : narrow) += FigureHtml(figure);
   html += Join({"<div class=\"stack\">\n", wide, "</div>\n<div class=\"stack\">\n", narrow, "</div>\n</div>\n</main>\n",
                 "<script id=\"data\" type=\"application/json\">", DataJson(data), "</script>\n",
                 "<script id=\"shader\" type=\"text/plain\">", kShader, "</script>\n<script>", kScript,
                 "</script>\n</body>\n</html>\n"},
                "");
   return html;
-}
-
-void WriteReportHtml(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
-                     const ReportOptions& options) {
-  const ReportData data(material, measurement, options.threads);
-  WriteFileAtomically(path, ReportHtml(data, std::make_shared<Fonts>(options.font_folders)));
 }
 
 }  // namespace lobefit

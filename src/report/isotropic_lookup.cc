@@ -54,8 +54,10 @@ IsotropicLookup::IsotropicLookup(const Measurement& measurement) : channels_(mea
     ++counts[cell];
   }
   std::vector<ScatterPoint> points;
+  point_of_cell_.resize(cells);
   for (std::size_t cell = 0; cell < cells; ++cell) {
     if (counts[cell] == 0) continue;
+    point_of_cell_[cell] = static_cast<std::uint32_t>(points.size() + 1);
     const float* sum = &sums[cell * width];
     const float share = 1.0F / static_cast<float>(counts[cell]);
     points.push_back({sum[0] * share, sum[1] * share, kPhiScale * sum[2] * share, 0});
@@ -64,9 +66,38 @@ IsotropicLookup::IsotropicLookup(const Measurement& measurement) : channels_(mea
   tree_ = std::make_unique<ScatterTree>(std::move(points), 3);
 }
 
+bool IsotropicLookup::FindInFullCells(double h, double d, double phi, double* f_r) const {
+  const std::array<double, 3> at = {h, d, phi};
+  std::array<std::size_t, 3> low = {};
+  std::array<double, 3> fraction = {};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double centres = static_cast<double>(kCells[k]) * at[k] - 0.5;
+    const double clamped = std::clamp(centres, 0.0, static_cast<double>(kCells[k] - 1));
+    low[k] = std::min(static_cast<std::size_t>(clamped), kCells[k] - 2);
+    fraction[k] = clamped - static_cast<double>(low[k]);
+  }
+  std::array<std::uint32_t, 8> points = {};
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const std::size_t cell =
+        ((low[0] + (corner & 1)) * kCells[1] + low[1] + (corner >> 1 & 1)) * kCells[2] + low[2] + (corner >> 2 & 1);
+    points[corner] = point_of_cell_[cell];
+    if (points[corner] == 0) return false;
+  }
+  std::fill(f_r, f_r + channels_, 0.0);
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    double weight = 1;
+    for (std::size_t k = 0; k < 3; ++k) weight *= (corner >> k & 1) != 0 ? fraction[k] : 1 - fraction[k];
+    for (std::size_t c = 0; c < channels_; ++c)
+      f_r[c] += weight * static_cast<double>(values_[(points[corner] - 1) * channels_ + c]);
+  }
+  return true;
+}
+
 bool IsotropicLookup::Find(const Vec3& wi, const Vec3& wo, double* f_r) const {
+  const Coordinates at = CoordinatesOf(wi, wo);
+  if (FindInFullCells(at.h, at.d, at.phi, f_r)) return true;
   std::array<ScatterTree::Neighbour, ScatterTree::kMost> found;
-  const int have = tree_->Nearest(PointOf(CoordinatesOf(wi, wo)), 6, &found);
+  const int have = tree_->Nearest(PointOf(at), 6, &found);
   if (have == 0 || found[0].distance2 > kReach * kReach) return false;
   std::fill(f_r, f_r + channels_, 0.0);
   double total = 0;

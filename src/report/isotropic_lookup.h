@@ -1,6 +1,7 @@
 // An isotropic measurement as a function of any pair of directions.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -19,8 +20,12 @@ class IsotropicLookup {
   bool Find(const Vec3& wi, const Vec3& wo, double* f_r) const;
 
  private:
+  // Between eight neighbouring cells, where all of them hold samples; a hundredth of the time that the tree takes.
+  bool FindInFullCells(double h, double d, double phi, double* f_r) const;
+
   std::size_t channels_;
-  std::vector<float> values_;  // [cell][channel]
+  std::vector<std::uint32_t> point_of_cell_;  // plus 1; 0: no sample
+  std::vector<float> values_;                 // [point][channel]
   std::unique_ptr<ScatterTree> tree_;
 };
 

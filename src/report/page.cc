@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "lobefit/base/parallel.h"
 #include "lobefit/report/layout.h"
 #include "lobefit/report/style.h"
 
@@ -146,17 +145,19 @@ std::string ModelWords(const Model& model) {
 
 Canvas DrawPage(const ReportData& data, double scale, const std::shared_ptr<Fonts>& fonts,
                 std::vector<std::string>* ids) {
-  std::vector<std::optional<Panel>> made(PanelMakers().size());
-  ParallelFor(made.size(), data.threads, [&](std::size_t k) { made[k] = PanelMakers()[k](data); });
-  std::vector<Panel> panels;
-  for (std::optional<Panel>& panel : made) {
-    if (panel) panels.push_back(std::move(*panel));
+  const std::vector<Panel> panels = MakePanels(data);
+  if (ids != nullptr) {
+    for (const Panel& panel : panels) ids->push_back(panel.id);
   }
+  return DrawPage(data, panels, scale, fonts);
+}
+
+Canvas DrawPage(const ReportData& data, const std::vector<Panel>& panels, double scale,
+                const std::shared_ptr<Fonts>& fonts) {
   const double width = kPageWidth - 2 * kMargin;
   Canvas ruler(1, 1, scale, fonts);
   std::vector<PanelSize> sizes;
   for (const Panel& panel : panels) {
-    if (ids != nullptr) ids->push_back(panel.id);
     sizes.push_back({panel.wide, [&panel, &ruler](double w) { return kPanelHead + panel.height(&ruler, w); }});
   }
   const PageLayout layout = ArrangePanels(sizes, kMargin, kHeader + kMargin / 2, width, kGap);

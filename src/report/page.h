@@ -13,6 +13,9 @@ namespace lobefit {
 // Ids of the panels that were drawn go to `ids` unless null.
 Canvas DrawPage(const ReportData& data, double scale, const std::shared_ptr<Fonts>& fonts,
                 std::vector<std::string>* ids = nullptr);
+// The same with panels that were made before.
+Canvas DrawPage(const ReportData& data, const std::vector<Panel>& panels, double scale,
+                const std::shared_ptr<Fonts>& fonts);
 
 // "isotropic GGX · masking ...": the choices of a model on one line.
 std::string ModelWords(const Model& model);
@@ -22,7 +25,7 @@ Canvas DrawStackedPage(const std::string& title, const std::string& subtitle, co
                        double scale, const std::shared_ptr<Fonts>& fonts);
 
 // The whole live page.
-std::string ReportHtml(const ReportData& data, const std::shared_ptr<Fonts>& fonts);
+std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels, const std::shared_ptr<Fonts>& fonts);
 
 // One panel alone, without the page around it, `width` units wide.
 Canvas DrawPanelAlone(const Panel& panel, double width, double scale, const std::shared_ptr<Fonts>& fonts);

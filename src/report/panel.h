@@ -46,5 +46,7 @@ std::optional<Panel> CorrelationPanel(const ReportData& data);
 
 // In the order of the page.
 const std::vector<PanelMaker>& PanelMakers();
+// Those that the measurement can fill, in that order.
+std::vector<Panel> MakePanels(const ReportData& data);
 
 }  // namespace lobefit

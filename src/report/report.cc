@@ -1,7 +1,10 @@
 #include "lobefit/report/report.h"
 
 #include <memory>
+#include <utility>
 
+#include "lobefit/base/file.h"
+#include "lobefit/base/parallel.h"
 #include "lobefit/report/exr.h"
 #include "lobefit/report/page.h"
 #include "lobefit/report/png.h"
@@ -15,11 +18,40 @@ const std::vector<PanelMaker>& PanelMakers() {
   return makers;
 }
 
+std::vector<Panel> MakePanels(const ReportData& data) {
+  std::vector<std::optional<Panel>> made(PanelMakers().size());
+  ParallelFor(made.size(), data.threads, [&](std::size_t k) { made[k] = PanelMakers()[k](data); });
+  std::vector<Panel> panels;
+  for (std::optional<Panel>& panel : made) {
+    if (panel) panels.push_back(std::move(*panel));
+  }
+  return panels;
+}
+
+void WriteReport(const Material& material, const Measurement& measurement, const ReportPaths& paths,
+                 const ReportOptions& options) {
+  const ReportData data(material, measurement, options.threads);
+  const auto fonts = std::make_shared<Fonts>(options.font_folders);
+  const std::vector<Panel> panels = MakePanels(data);
+  if (!paths.png.empty()) {
+    const Canvas canvas = DrawPage(data, panels, options.scale, fonts);
+    WritePng(canvas.pixels(), 96 * options.scale, paths.png);
+  }
+  if (!paths.html.empty()) WriteFileAtomically(paths.html, ReportHtml(data, panels, fonts));
+  if (paths.exr.empty()) return;
+  std::vector<NamedField> fields;
+  for (const Panel& panel : panels) fields.insert(fields.end(), panel.fields.begin(), panel.fields.end());
+  WriteExr(fields, paths.exr);
+}
+
 void WriteReportPng(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
                     const ReportOptions& options) {
-  const ReportData data(material, measurement, options.threads);
-  const Canvas canvas = DrawPage(data, options.scale, std::make_shared<Fonts>(options.font_folders));
-  WritePng(canvas.pixels(), 96 * options.scale, path);
+  WriteReport(material, measurement, {path, {}, {}}, options);
+}
+
+void WriteReportHtml(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
+                     const ReportOptions& options) {
+  WriteReport(material, measurement, {{}, path, {}}, options);
 }
 
 void WriteReportExr(const Material& material, const Measurement& measurement, const std::filesystem::path& path,

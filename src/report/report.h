@@ -18,6 +18,16 @@ struct ReportOptions {
   std::vector<std::string> font_folders;
 };
 
+// Where a report is to be written; an empty path is left out.
+struct ReportPaths {
+  std::filesystem::path png, html, exr;
+};
+
+// Several formats at once, which share what is computed for them. Throws as the functions below; what comes before the
+// failing one in the order png, html, exr is written.
+void WriteReport(const Material& material, const Measurement& measurement, const ReportPaths& paths,
+                 const ReportOptions& options = {});
+
 // Draws `material` against the measurement that it was fitted to, as a PNG. Panels that the measurement cannot fill are
 // left out. Throws InputError where the channels of the two differ or there is no sample, OutputError where the file
 // cannot be written.

@@ -109,7 +109,7 @@ double Quantile(std::vector<double>* values, double q) {
   return low == high || !std::isfinite(low) ? low : low + f * (high - low);
 }
 
-ResidualBand::ResidualBand(const ReportData& data) {
+ResidualBand::ResidualBand(const ReportData& data, std::size_t channel) {
   constexpr std::array<double, 19> kEdges = {0, 1, 2, 3, 4, 6, 8, 10, 13, 16, 20, 25, 30, 36, 43, 50, 60, 70, 90};
   constexpr std::size_t kEnough = 24;      // samples of a bin; fewer join the next one
   constexpr std::size_t kTaken = 1 << 18;  // samples taken in all, evenly over the file
@@ -122,12 +122,10 @@ ResidualBand::ResidualBand(const ReportData& data) {
     const auto edge = std::upper_bound(kEdges.begin(), kEdges.end(), theta_h);
     const auto bin =
         std::clamp<std::ptrdiff_t>(edge - kEdges.begin() - 1, 0, static_cast<std::ptrdiff_t>(ratios.size()) - 1);
-    for (std::size_t c = 0; c < data.channels(); ++c) {
-      const double ratio = data.LogRatio(c, i);
-      if (std::isnan(ratio)) continue;
-      ratios[static_cast<std::size_t>(bin)].push_back(ratio);
-      sums[static_cast<std::size_t>(bin)] += theta_h;
-    }
+    const double ratio = data.LogRatio(channel, i);
+    if (std::isnan(ratio)) continue;
+    ratios[static_cast<std::size_t>(bin)].push_back(ratio);
+    sums[static_cast<std::size_t>(bin)] += theta_h;
   }
   std::vector<double> gathered;
   double sum = 0;

@@ -40,10 +40,10 @@ struct ReportData {
   double LogRatio(std::size_t channel, std::size_t sample) const;
 };
 
-// Quantiles of ln(measured / fitted) over theta_h (all channels), as far as samples are there.
+// Quantiles of ln(measured / fitted) of one channel over theta_h, as far as samples are there.
 class ResidualBand {
  public:
-  explicit ResidualBand(const ReportData& data);
+  ResidualBand(const ReportData& data, std::size_t channel);
   struct Quantiles {
     double low = 0, middle = 0, high = 0;  // 5, 50 and 95 %
   };

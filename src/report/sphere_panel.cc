@@ -240,6 +240,8 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     spheres->measured = IsCovered(spheres->sphere[0]);
     if (spheres->measured)
       spheres->sphere[2] = SkySphere(measured, lobe, to_color, data.channels(), kSkySamples, data.threads);
+    // A narrow lobe in a sparse table leaves holes and rings under the sky: that is no measured appearance.
+    spheres->measured = spheres->measured && IsCovered(spheres->sphere[2]);
   }
   spheres->sphere[1] = LightFitted(data, to_color, kLightSize);
   spheres->sphere[3] = SkySphere(fitted, lobe, to_color, data.channels(),

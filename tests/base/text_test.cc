@@ -1,6 +1,11 @@
 #include "lobefit/base/text.h"
 
+#include <bit>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +19,34 @@ TEST(ParseDouble, TakesTheWholeFieldOrNothing) {
   for (const char* bad : {"", " ", "1,5", "0.5abc", "1 2", "0x10", "--1", "+-1", "1e", "e5", "1.5f"}) {
     EXPECT_FALSE(ParseDouble(bad).has_value()) << bad;
   }
+}
+
+// The quick way for plain numbers gives the bits of the general one, or leaves the field to it.
+TEST(ParseDouble, PlainDecimalsAreExact) {
+  std::mt19937_64 random(5);
+  std::size_t quick = 0;
+  for (int i = 0; i < 100000; ++i) {
+    std::string text = std::to_string(random() % 1000000000000000000ULL);
+    text = text.substr(0, 1 + random() % text.size());
+    if (random() % 4 != 0) text.insert(1 + random() % text.size(), ".");
+    if (random() % 2 == 0) text.insert(0, "-");
+    double expected = 0;
+    std::from_chars(text.data(), text.data() + text.size(), expected);
+    std::size_t length = 0;
+    const std::optional<double> plain = ParsePlainDecimal(text, &length);
+    if (plain && length == text.size()) {
+      ++quick;
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(*plain), std::bit_cast<std::uint64_t>(expected)) << text;
+    }
+    EXPECT_EQ(ParseDouble(text), expected) << text;
+  }
+  EXPECT_GT(quick, 60000U);
+  std::size_t length = 0;
+  EXPECT_EQ(ParsePlainDecimal("12.5,3", &length), 12.5);
+  EXPECT_EQ(length, 4U);
+  EXPECT_TRUE(std::signbit(*ParsePlainDecimal("-0", &length)));
+  for (const char* left : {"", "-", ".5", "5.", "+1", "nan", " 1", "1234567890123456", "0.1234567890123456"})
+    EXPECT_FALSE(ParsePlainDecimal(left, &length)) << left;
 }
 
 TEST(ParseDouble, NonFiniteAndOutOfRange) {

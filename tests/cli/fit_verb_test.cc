@@ -9,10 +9,13 @@ namespace {
 
 using FitVerb = ProgramTest;
 
-TEST_F(FitVerb, WritesADocumentAndAPicture) {
+TEST_F(FitVerb, WritesADocumentAPictureAndAPage) {
   const ProgramResult result = Shell("lobefit fit $SOURCE/samples/brushed_metal.csv");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(Files(), testing::ElementsAre("brushed_metal.material.json", "brushed_metal.report.png"));
+  EXPECT_THAT(Files(), testing::ElementsAre("brushed_metal.material.json", "brushed_metal.report.html",
+                                            "brushed_metal.report.png"));
+  // The plot in characters is for terminals.
+  EXPECT_THAT(result.out, testing::Not(testing::HasSubstr("Worst slice")));
   EXPECT_THAT(result.out, testing::HasSubstr("theta_z_deg"));
   EXPECT_THAT(result.out, testing::HasSubstr("because the samples leave the plane of incidence"));
   EXPECT_TRUE(FollowsSchema(ReadWholeFile(folder_ / "brushed_metal.material.json")));

@@ -18,6 +18,14 @@ std::string Text(const std::string& in, const std::string& dim, const std::strin
   return "#SAMPLE made by hand\n# a comment\n#DIM " + dim + "\n#PARAM_IN " + in + "\n" + more + rows;
 }
 
+// Found by fuzzing: the ratio of the squares was 0.
+TEST(Alta, WidestIntervalStillHasAWeight) {
+  const Measurement m = ReadBytes(
+      ReadAlta, Text("COS_TH", "1 1", "0.5 1 1e-100\n0.6 1 1e100\n", "#PARAM_OUT INV_STERADIAN\n#VS 1\n"));
+  ASSERT_EQ(m.samples.weight.size(), 2U);
+  EXPECT_NEAR(m.samples.weight[1] / m.samples.weight[0], 1e-12, 1e-20);
+}
+
 TEST(Alta, CosineFactorIsTheOutgoingOne) {
   // Light at 60, view at 30 degrees; the view's coordinates are theta cos, theta sin of the azimuth difference.
   const std::string rows =

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "tests/support/temporary_file.h"
 #include "tests/support/test_brdf.h"
 #include <gtest/gtest.h>
@@ -54,6 +57,43 @@ TEST(Convert, EveryFormatReportsWhatItLost) {
     }
     EXPECT_LT(conversion.difference.median, most_median.at(name)) << name;
     EXPECT_GT(conversion.difference.compared, 1000U) << name;
+  }
+}
+
+// One azimuth of the light does for an isotropic surface, if the viewers leave the plane.
+TEST(Convert, MerlTableFromOneAzimuth) {
+  TestBrdf brdf;
+  brdf.alpha_x = brdf.alpha_y = 0.4;
+  brdf.tilt = brdf.rotation = 0;
+  GoniometerLayout layout;
+  for (int theta = 0; theta <= 75; theta += 15) layout.polar_angles.push_back(DegreesToRadians(theta));
+  layout.azimuths = {0.5};
+  layout.detector_step = DegreesToRadians(6);
+  const BrdfFunction grey = [&](const Vec3& wi, const Vec3& wo, double* values) { values[0] = brdf(wi, wo); };
+  Measurement m = Synthesise(Goniometer(layout), {{"Y"}, {}}, grey, {}, 1);
+  const TemporaryFile file;
+  const WriteFormat& merl = FindWriteFormat("merl", "x");
+  const Conversion conversion = Convert({&m, nullptr, m.channels, false}, merl, {}, file.path());
+  EXPECT_EQ(std::filesystem::file_size(file.path()), 34992012U);
+  const Measurement table = ReadMeasurement(file.path());
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < table.samples.size(); i += 97) {
+    const Vec3 wi = table.samples.wi(i), wo = table.samples.wo(i);
+    if (wi.z > 0.3 && wo.z > 0.3) errors.push_back(std::fabs(table.samples.values[0][i] / brdf(wi, wo) - 1));
+  }
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.03);
+
+  std::vector<std::uint8_t> in_plane(m.samples.size());
+  for (std::size_t i = 0; i < m.samples.size(); ++i)
+    in_plane[i] = std::fabs(m.samples.wo_y[i] * std::cos(0.5) - m.samples.wo_x[i] * std::sin(0.5)) < 1e-3 ? 1 : 0;
+  m.samples.Keep(in_plane);
+  try {
+    Convert({&m, nullptr, m.channels, false}, merl, {}, file.path());
+    FAIL() << "a table from one plane";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("lies within 10 degrees of a sample; by theta_d"), std::string::npos)
+        << error.what();
   }
 }
 
