@@ -147,12 +147,16 @@ void DrawColorScale(Canvas* canvas, const Box& box, Rgb (*color)(double), const 
     const double x = box.x + box.width * i / steps;
     canvas->Fill({x, box.y, box.width / steps, box.height}, color((i + 0.5) / steps));
   }
+  double labelled = -1e9;  // where the last label ends
   for (const Tick& tick : ticks) {
     if (tick.label.empty()) continue;
     const double x = box.x + box.width * Fraction(range, tick.value);
     canvas->Line({x, box.bottom()}, {x, box.bottom() + 3}, {style::kFaint, 1});
     TextStyle text = style::Tick(Align::kCenter);
     text.baseline = Baseline::kTop;
+    const double half = canvas->TextWidth(tick.label, text) / 2;
+    if (x - half < labelled + 3) continue;
+    labelled = x + half;
     canvas->Text({x, box.bottom() + 5}, tick.label, text);
   }
   if (!label.empty())

@@ -78,6 +78,7 @@ struct Spheres {
   std::array<Sphere, 4> sphere;  // measured and fitted under the light, under the sky
   std::array<double, 2> exposure;
   bool measured = false;  // else only the fitted ones
+  bool sky = false;       // measured under the sky too
 };
 
 cv::Mat Rendered(const Sphere& sphere, double exposure) {
@@ -100,20 +101,22 @@ double Side(const Spheres& spheres, double width) {
 }
 
 void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
-  const double size = Side(spheres, content.width),
-               used = spheres.measured ? 4 * size + 2 * kGap + kGroupGap : 2 * size + kGap;
+  const double size = Side(spheres, content.width), used = spheres.sky        ? 4 * size + 2 * kGap + kGroupGap
+                                                           : spheres.measured ? 3 * size + kGap + kGroupGap
+                                                                              : 2 * size + kGap;
   double x = content.x + std::max(0.0, (content.width - used) / 2);
   const std::array<const char*, 2> lights = {"one light, upper left", "sky with a low sun"};
   for (std::size_t k = 0; k < 4; ++k) {
     const bool is_fitted = k % 2 == 1;
-    if (!is_fitted && !spheres.measured) continue;
+    if (!is_fitted && !(k == 0 ? spheres.measured : spheres.sky)) continue;
     const Box box = {x, content.y + 42, size, size};
     const cv::Mat picture = Rendered(spheres.sphere[k], spheres.exposure[k / 2]);
     canvas->Image(RoundPicture(picture, static_cast<int>(std::lround(size * canvas->scale()))), box, false);
     canvas->Text({box.center().x, content.y + 34}, is_fitted ? "fitted" : "measured",
                  style::Body(style::kInk, Align::kCenter));
-    if (!is_fitted || !spheres.measured) {
-      const double middle = spheres.measured ? x + size + kGap / 2 : box.center().x;
+    const bool pair = k < 2 ? spheres.measured : spheres.sky;
+    if (!is_fitted || !pair) {
+      const double middle = pair ? x + size + kGap / 2 : box.center().x;
       canvas->Text({middle, content.y + 14}, lights[k / 2], style::Note(style::kSecondary, Align::kCenter));
     }
     x += size + (k == 1 && spheres.measured ? kGroupGap : kGap);
@@ -241,14 +244,14 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     if (spheres->measured)
       spheres->sphere[2] = SkySphere(measured, lobe, to_color, data.channels(), kSkySamples, data.threads);
     // A narrow lobe in a sparse table leaves holes and rings under the sky: that is no measured appearance.
-    spheres->measured = spheres->measured && IsCovered(spheres->sphere[2]);
+    spheres->sky = spheres->measured && IsCovered(spheres->sphere[2]);
   }
   spheres->sphere[1] = LightFitted(data, to_color, kLightSize);
   spheres->sphere[3] = SkySphere(fitted, lobe, to_color, data.channels(),
-                                 spheres->measured ? kSkySamples : kSkySamplesOfAModel, data.threads);
+                                 spheres->sky ? kSkySamples : kSkySamplesOfAModel, data.threads);
   // One exposure for a pair: the measured sphere sets it.
-  const std::size_t first = spheres->measured ? 0 : 1;
-  spheres->exposure = {SphereExposure(spheres->sphere[first]), SphereExposure(spheres->sphere[first + 2])};
+  spheres->exposure = {SphereExposure(spheres->sphere[spheres->measured ? 0 : 1]),
+                       SphereExposure(spheres->sphere[spheres->sky ? 2 : 3])};
   Panel panel;
   panel.id = "sphere";
   panel.title = "As it looks";
