@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <sstream>
-#include <tuple>
 
 #include "tests/support/temporary_file.h"
 #include "tests/support/test_brdf.h"
@@ -12,7 +10,6 @@
 #include "lobefit/io/read.h"
 #include "lobefit/io/rgl_angles.h"
 #include "lobefit/io/rgl_brdf.h"
-#include "lobefit/io/tensor_file.h"
 #include "lobefit/io/write_rgl.h"
 
 namespace lobefit {
@@ -147,66 +144,6 @@ TEST(Rgl, IsotropicFilesHaveOneAzimuth) {
   const Errors errors = ErrorsOf(RglBrdf(file.path(), mapped.bytes()), brdf);
   EXPECT_LT(errors.median, 0.004);
   EXPECT_LT(errors.percentile_90, 0.02);
-}
-
-// The file with only its first `azimuths` azimuths.
-std::string Cut(const std::filesystem::path& path, std::uint64_t azimuths) {
-  const MappedFile mapped(path);
-  const TensorFile file(path, mapped.bytes());
-  std::vector<TensorOutput> fields;
-  for (const auto& [name, type, ndim] : {std::tuple{"phi_i", TensorType::kFloat32, 1},
-                                         {"theta_i", TensorType::kFloat32, 1},
-                                         {"ndf", TensorType::kFloat32, 2},
-                                         {"sigma", TensorType::kFloat32, 2},
-                                         {"vndf", TensorType::kFloat32, 4},
-                                         {"rgb", TensorType::kFloat32, 5},
-                                         {"jacobian", TensorType::kUint8, 1}}) {
-    const TensorField& field = file.Get(name, type, static_cast<std::size_t>(ndim));
-    TensorOutput output = {name, type, field.shape, field.bytes};
-    const std::string_view key = name;
-    if (key == "phi_i" || key == "vndf" || key == "rgb") {
-      output.bytes = field.bytes.substr(0, field.bytes.size() / field.shape[0] * azimuths);
-      output.shape[0] = azimuths;
-    }
-    fields.push_back(output);
-  }
-  std::ostringstream out;
-  WriteTensorFile(out, fields);
-  return out.str();
-}
-
-// A surface with two mirror planes may store a half or a quarter of the viewers.
-TEST(Rgl, ReducedFilesStandForTheWholeCircle) {
-  TestBrdf brdf;
-  brdf.tilt = brdf.rotation = 0;
-  const TemporaryFile file;
-  RglWriteOptions options;
-  options.azimuths = 8;
-  options.polar_angles = 6;
-  // A half turn and a quarter are whole cells, so that both files interpolate between the same nodes.
-  options.density_size = 33;
-  options.table_size = 17;
-  WriteRgl(Rgb(brdf), kRgb, options, file.path());
-  const MappedFile mapped(file.path());
-  const RglBrdf whole(file.path(), mapped.bytes());
-  for (const auto& [azimuths, reduction] : {std::pair<std::uint64_t, const char*>{5, "2"}, {3, "4"}}) {
-    const std::string bytes = Cut(file.path(), azimuths);
-    const RglBrdf reduced("reduced", bytes);
-    for (int i = 0; i < 500; ++i) {
-      const Vec3 wi = FromSpherical(0.1 + 1.2 * std::fmod(i * 0.618, 1.0), i * 2.4);
-      const Vec3 wo = FromSpherical(0.05 + 1.2 * std::fmod(i * 0.414, 1.0), i * 1.7);
-      double a[3], b[3];
-      whole.Evaluate(wi, wo, a);
-      reduced.Evaluate(wi, wo, b);
-      ASSERT_NEAR(b[0] / a[0], 1, 2e-3) << reduction << " " << i;
-    }
-    const Measurement m = ReadMeasurement(TemporaryFile(bytes).path());
-    EXPECT_EQ(m.conventions.at("rgl-reduction"), reduction);
-    EXPECT_FALSE(m.isotropic);
-    for (std::size_t i = 0; i < m.samples.size(); i += 11) {
-      ASSERT_NEAR(m.samples.values[0][i] / brdf(m.samples.wi(i), m.samples.wo(i)), 1, 2e-4);
-    }
-  }
 }
 
 TEST(Rgl, SpectralFilesKeepTheirWavelengths) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/report/canvas.h"
 
 namespace lobefit {
 namespace {
