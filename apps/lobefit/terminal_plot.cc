@@ -144,7 +144,7 @@ std::string WorstSlicePlot(const Material& material, const Measurement& measurem
   std::string head = fmt::format("Worst slice: theta_{} = {:.4g}", side, RadiansToDegrees(worst->theta));
   if (!measurement.isotropic) head += fmt::format(", phi_{} = {:.4g}", side, RadiansToDegrees(worst->phi));
   return head +
-         fmt::format(" degrees, off by {:.2g} % (rms);  o measured  - fitted  @ both;  f_r over theta_{}\n",
+         fmt::format(" degrees, off by {:.3g} % (rms)\n  o measured  - fitted  @ both;  f_r over theta_{}\n",
                      100 * std::expm1(most), slices.outgoing_stays ? 'i' : 'o') +
          grid.Text();
 }

@@ -25,7 +25,7 @@ TEST(TerminalPlot, ShowsTheSliceThatIsMissedMost) {
     for (auto& channel : measurement.samples.values) channel[i] *= 2;
   }
   const std::string plot = WorstSlicePlot(material, measurement, 90);
-  EXPECT_TRUE(plot.starts_with("Worst slice: theta_i = 50, phi_i = 0 degrees, off by 1e+02 % (rms);")) << plot;
+  EXPECT_TRUE(plot.starts_with("Worst slice: theta_i = 50, phi_i = 0 degrees, off by 100 % (rms)\n")) << plot;
   EXPECT_LE(LongestLine(plot), 90U) << plot;
   for (const char mark : {'o', '-', '+'}) EXPECT_NE(plot.find(mark), std::string::npos) << plot;
   // A factor of two is more than a row of characters: no mark of the two coincides below the peak's slopes.
