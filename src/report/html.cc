@@ -1,4 +1,5 @@
 // The page: the panels as pictures, and the same data live.
+#include <algorithm>
 #include <memory>
 
 #include "lobefit/base/base64.h"
@@ -49,6 +50,34 @@ std::string FigureHtml(const Figure& figure) {
               "");
 }
 
+// What the script and the shader of the page evaluate; other models are shown in pictures only.
+bool IsLive(const Model& model) {
+  return model.diffuse != Diffuse::kMicrofacet &&
+         std::all_of(model.lobes.begin(), model.lobes.end(), [](const Lobe& l) {
+           return FamilyOf(l.ndf) == NdfFamily::kGgx && l.masking <= Masking::kSmithHeight &&
+                  (l.fresnel == Fresnel::kSchlick || l.fresnel == Fresnel::kNone);
+         });
+}
+
+constexpr const char* kLive = R"(<div class="live">
+<div>
+<section id="sphereSection"><h2>Under a light</h2>
+<canvas id="sphere" tabindex="0" role="img" aria-label="Spheres of the material, measured and fitted, under one light. Arrow keys move the light."></canvas>
+<div class="pair" id="names"><span>measured</span><span>fitted</span></div>
+<p class="note">Drag on a sphere, or use the arrow keys, to move the light. Grey: no measured sample is near.</p></section>
+<p id="noGl" class="note hidden">This browser offers no WebGL 2: the pictures below show the spheres that would be live here.</p>
+<section id="sliceSection"><h2>Slice in the plane of incidence</h2>
+<div class="controls"><label>polar angle <select id="theta"></select></label><label id="phiBox">azimuth <select id="phi"></select></label><button id="scale" type="button">linear scale</button></div>
+<svg id="slice" viewBox="0 0 860 430" tabindex="0" role="img"></svg>
+<div id="hover" aria-live="polite">Point at a measured value, or step through them with the arrow keys.</div></section>
+</div>
+<section><h2>Parameters, live</h2>
+<div id="sliders"></div>
+<div class="controls"><button id="reset" type="button">Back to the fit</button></div>
+<p class="note">Sliders move the sphere and the curve of the slice; the pictures below stay with the fit.</p></section>
+</div>
+)";
+
 }  // namespace
 
 std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels, const std::shared_ptr<Fonts>& fonts) {
@@ -69,31 +98,20 @@ std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels,
                 "</h1><span class=\"chip", good ? "" : " bad", "\">", verdict, "</span></header>\n",
                 "<p class=\"sub\">", HtmlText(ModelWords(material.model)), "</p>\n"},
                "");
-  html += R"(<main>
-<div class="live">
-<div>
-<section id="sphereSection"><h2>Under a light</h2>
-<canvas id="sphere" tabindex="0" role="img" aria-label="Spheres of the material, measured and fitted, under one light. Arrow keys move the light."></canvas>
-<div class="pair" id="names"><span>measured</span><span>fitted</span></div>
-<p class="note">Drag on a sphere, or use the arrow keys, to move the light. Grey: no measured sample is near.</p></section>
-<p id="noGl" class="note hidden">This browser offers no WebGL 2: the pictures below show the spheres that would be live here.</p>
-<section id="sliceSection"><h2>Slice in the plane of incidence</h2>
-<div class="controls"><label>polar angle <select id="theta"></select></label><label id="phiBox">azimuth <select id="phi"></select></label><button id="scale" type="button">linear scale</button></div>
-<svg id="slice" viewBox="0 0 860 430" tabindex="0" role="img"></svg>
-<div id="hover" aria-live="polite">Point at a measured value, or step through them with the arrow keys.</div></section>
-</div>
-<section><h2>Parameters, live</h2>
-<div id="sliders"></div>
-<div class="controls"><button id="reset" type="button">Back to the fit</button></div>
-<p class="note">Sliders move the sphere and the curve of the slice; the pictures below stay with the fit.</p></section>
-</div>
-<h2>The fit</h2>
+  const bool live = IsLive(material.model);
+  html += "<main>\n";
+  html += live ? kLive
+               : "<p class=\"note\">This model is shown in pictures only; GGX lobes with Smith masking and Schlick's "
+                 "Fresnel term come with a live sphere, slice and sliders.</p>\n";
+  html += R"(<h2>The fit</h2>
 <div class="panels">
 )";
   std::string wide, narrow;
   for (const Figure& figure : DrawFigures(panels, fonts, 1500000)) (figure.wide ? wide : narrow) += FigureHtml(figure);
-  html += Join({"<div class=\"stack\">\n", wide, "</div>\n<div class=\"stack\">\n", narrow, "</div>\n</div>\n</main>\n",
-                "<script id=\"data\" type=\"application/json\">", DataJson(data), "</script>\n",
+  html += Join(
+      {"<div class=\"stack\">\n", wide, "</div>\n<div class=\"stack\">\n", narrow, "</div>\n</div>\n</main>\n"}, "");
+  if (!live) return html + "</body>\n</html>\n";
+  html += Join({"<script id=\"data\" type=\"application/json\">", DataJson(data), "</script>\n",
                 "<script id=\"shader\" type=\"text/plain\">", kShader, "</script>\n<script>", kScript,
                 "</script>\n</body>\n</html>\n"},
                "");

@@ -47,7 +47,8 @@ void DrawValue(Columns* row, const Parameter& parameter, const FittedParameter& 
   }
   TextStyle remark = style::Note(style::kFaint);
   std::string words = fitted.free ? "" : "fixed";
-  if (fitted.at_bound) words = "bound", remark.color = style::kWarning;
+  // Of the channels of a parameter at its bound, those that are there have no interval.
+  if (fitted.at_bound && !known) words = "bound", remark.color = style::kWarning;
   if (fitted.free && !known && !fitted.at_bound) words = "open", remark.color = style::kWarning;
   row->canvas->Text({row->box.x + kRemark * row->box.width, row->y}, words, remark);
 }

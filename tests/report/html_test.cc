@@ -139,5 +139,18 @@ TEST_P(HtmlPageWithoutWebGl, KeepsPicturesAndSlices) {
 INSTANTIATE_TEST_SUITE_P(Kinds, HtmlPageWithoutWebGl, testing::Values(PageCase{"table_rgb_plain", 3, true, true, true}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
+TEST(HtmlPageOfAModelThatIsNotLive, HoldsPicturesOnly) {
+  Material material = test::MakeMaterial(1, false);
+  const Measurement measurement = test::Measure(material, test::GoniometerPairs(true), 0.05, false);
+  material.model.lobes[0].ndf = Ndf::kBeckmannOffCenter;
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "not_live.html";
+  WriteReportHtml(material, measurement, path, {.threads = 2, .scale = 1, .font_folders = {}});
+  const std::string html(MappedFile(path).bytes());
+  EXPECT_THAT(html, HasSubstr("<img alt=\"In-plane curves\""));
+  EXPECT_THAT(html, HasSubstr("shown in pictures only"));
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+  EXPECT_THAT(html, Not(HasSubstr("id=\"sliders\"")));
+}
+
 }  // namespace
 }  // namespace lobefit
