@@ -24,17 +24,21 @@ void MeasurementOptions::AddTo(CLI::App* app) {
 }
 
 Measurement MeasurementOptions::Load(const std::string& path) const {
-  Selection selection;
-  if (!theta_i_.empty()) selection.theta_i = ParseAngleRange(theta_i_, "--theta-i");
-  if (!phi_i_.empty()) selection.phi_i = ParseAngleRange(phi_i_, "--phi-i");
   ReadOptions options;
   for (std::size_t i = 0; i < words_.size(); ++i) {
     if (!words_[i].empty()) ReadOptionTable()[i].set(&options, words_[i]);
   }
   Measurement measurement = ReadMeasurement(path, options);
-  Apply(selection, &measurement);
-  if (!channels_.empty() && channels_ != "all") Apply(MakeChannelMap(channels_, measurement.channels), &measurement);
+  Select(&measurement);
   return measurement;
+}
+
+void MeasurementOptions::Select(Measurement* measurement) const {
+  Selection selection;
+  if (!theta_i_.empty()) selection.theta_i = ParseAngleRange(theta_i_, "--theta-i");
+  if (!phi_i_.empty()) selection.phi_i = ParseAngleRange(phi_i_, "--phi-i");
+  Apply(selection, measurement);
+  if (!channels_.empty() && channels_ != "all") Apply(MakeChannelMap(channels_, measurement->channels), measurement);
 }
 
 }  // namespace lobefit

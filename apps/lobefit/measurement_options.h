@@ -17,6 +17,8 @@ class MeasurementOptions {
   void AddTo(CLI::App* app);
   // Reads `path` and applies the selection. Throws UsageError and InputError.
   Measurement Load(const std::string& path) const;
+  // Keeps the chosen incident directions and channels.
+  void Select(Measurement* measurement) const;
 
  private:
   std::string theta_i_, phi_i_, channels_;

@@ -1,10 +1,12 @@
 #include "summary.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "lobefit/base/text.h"
+#include "lobefit/math/vec.h"
 #include "lobefit/measurement/set_aside.h"
 
 namespace lobefit {
@@ -43,6 +45,29 @@ void AppendParameters(const Material& material, std::string* text) {
   }
 }
 
+// At most twelve slices of a table of lobes, evenly chosen.
+void AppendLobes(const SelTable& table, const std::string& channel, std::string* text) {
+  *text += fmt::format(
+      "{} incident direction{}, {} squared ellipsoidal lobe{} and a constant for {}{}; amplitudes of {}:\n",
+      table.slices.size(), table.slices.size() == 1 ? "" : "s", table.slices[0].lobes.size(),
+      table.slices[0].lobes.size() == 1 ? "" : "s", table.quantity == SelQuantity::kBrdf ? "f_r" : "f_r cos theta_o",
+      table.bound ? ", on or above every sample" : "", channel);
+  *text += "  theta_i   phi_i  constant |  alpha_x  alpha_y offset/deg      psi/deg amplitude\n";
+  const std::size_t shown = std::min<std::size_t>(12, table.slices.size());
+  for (std::size_t k = 0; k < shown; ++k) {
+    const SelSlice& slice = table.slices[shown == 1 ? 0 : k * (table.slices.size() - 1) / (shown - 1)];
+    *text += fmt::format("  {:>7.2f} {:>7.2f} {:>9.3g}", RadiansToDegrees(slice.theta_i), RadiansToDegrees(slice.phi_i),
+                         slice.constant[0]);
+    for (std::size_t l = 0; l < slice.lobes.size(); ++l) {
+      const SelShape& shape = slice.lobes[l];
+      *text += fmt::format(" | {:>8.4f} {:>8.4f} {:>6.2f},{:>6.2f} {:>8.1f} {:>9.3g}", shape.alpha_x, shape.alpha_y,
+                           RadiansToDegrees(shape.offset_in), RadiansToDegrees(shape.offset_across),
+                           RadiansToDegrees(shape.psi), slice.amplitude[l][0]);
+    }
+    *text += '\n';
+  }
+}
+
 }  // namespace
 
 std::string WithError(double value, double standard_error) {
@@ -60,8 +85,15 @@ std::string Summary(const Material& material) {
   text += fmt::format("{} of {} samples used, {} channel{}", material.samples_used, material.samples_read,
                       material.channels.size(), material.channels.size() == 1 ? "" : "s");
   for (const auto& [key, count] : material.set_aside) text += fmt::format("; {} {}", count, WordsOf(key));
-  text += fmt::format("\nParameters (+- one standard error), metric {} on {}:\n", material.metric, material.weighting);
-  AppendParameters(material, &text);
+  if (material.sel) {
+    text += '\n';
+    AppendLobes(*material.sel, material.channels[0], &text);
+    text += fmt::format("Metric {} on {}. ", material.metric, material.weighting);
+  } else {
+    text +=
+        fmt::format("\nParameters (+- one standard error), metric {} on {}:\n", material.metric, material.weighting);
+    AppendParameters(material, &text);
+  }
   text += "Root mean square error:";
   for (const MetricError& error : material.errors) text += fmt::format("  {} {:.3g}", error.metric, error.rms);
   text += '\n';

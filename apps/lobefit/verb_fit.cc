@@ -13,7 +13,9 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/fit/fit.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/text.h"
+#include "lobefit/fit/sel_fit.h"
 #include "lobefit/material/json.h"
 #include "lobefit/report/report.h"
 
@@ -50,6 +52,15 @@ int Judge(const Material& material) {
   return kExitDone;
 }
 
+// What a material gives on hemispheres, in place of a measurement.
+Measurement Sampled(const FitVerb& verb) {
+  Measurement measurement = SampleForSel(ReadModelMaterial(verb.file));
+  measurement.source = std::filesystem::path(verb.file).filename().string();
+  measurement.sha256 = Sha256Hex(MappedFile(verb.file).bytes());
+  verb.measurement.Select(&measurement);
+  return measurement;
+}
+
 int RunFit(const FitVerb& verb, const CommonOptions& common) {
   std::error_code error;
   const std::filesystem::path folder = verb.out;
@@ -59,12 +70,18 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
         fmt::format("{}: cannot be made: {}; choose another folder with --out", verb.out, error.message()));
 
   auto start = std::chrono::steady_clock::now();
-  Measurement measurement = verb.measurement.Load(verb.file);
+  const bool of_model = LooksLikeMaterial(verb.file);
+  Measurement measurement = of_model ? Sampled(verb) : verb.measurement.Load(verb.file);
   const double read_s = Seconds(start);
   FitOptions options = verb.fit;
   options.threads = common.Threads();
   const Recipe recipe = verb.recipe.Choose(measurement);
-  Material material = Fit(recipe, options, &measurement);
+  if (of_model && !recipe.sel) {
+    throw UsageError(fmt::format(
+        "{}: is a material, to which only lobes can be fitted; add --recipe sel, or give a measurement file",
+        Excerpt(verb.file, 200)));
+  }
+  Material material = FitRecipe(recipe, options, &measurement);
   if (verb.recipe.IsAutomatic()) {
     if (const std::optional<Recipe> alternative = AutomaticAlternative(recipe, material))
       material = Fit(*alternative, options, &measurement);
@@ -72,13 +89,15 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   material.command = common.command;
   material.timings_s["read"] = read_s;
 
-  const std::string name = verb.name.empty() ? std::filesystem::path(verb.file).stem().string() : verb.name;
+  // A table of lobes must not overwrite the material that it was sampled from.
+  const std::string stem = std::filesystem::path(verb.file).stem().string();
+  const std::string name = !verb.name.empty() ? verb.name : of_model ? stem.substr(0, stem.find('.')) + ".sel" : stem;
   const std::filesystem::path document = folder / (name + ".material.json"), picture = folder / (name + ".report.png");
   const std::vector<std::string> formats = ParseReportFormats(verb.format);
   // The document first: it is kept even where drawing fails.
   WriteMaterial(material, document);
   std::string pictures;
-  if (!verb.no_report) {
+  if (!verb.no_report && !material.sel) {
     start = std::chrono::steady_clock::now();
     ReportOptions report;
     report.threads = options.threads;
@@ -92,6 +111,8 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
     fmt::print("{}{}", Summary(material), WorstSlicePlot(material, measurement, TerminalColumns()));
     fmt::print("Result:  {}\n", document.string());
     fmt::print("{}", pictures);
+    if (material.sel && !verb.no_report)
+      fmt::print("No report: its panels show models; `lobefit compare` sets the lobes beside one.\n");
   }
   return Judge(material);
 }
@@ -100,7 +121,7 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
 
 std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<FitVerb>();
-  app->add_option("FILE", verb->file, "measurement file")->required();
+  app->add_option("FILE", verb->file, "measurement file; for recipe sel also a *.material.json")->required();
   app->add_option("--out", verb->out, "folder of the results (default: the current one)");
   app->add_option("--name", verb->name, "NAME of the results (default: the file's name without its ending)");
   app->add_option("--format", verb->format,

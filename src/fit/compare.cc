@@ -15,6 +15,8 @@
 #include "lobefit/fit/layout.h"
 #include "lobefit/fit/prediction.h"
 #include "lobefit/fit/problem.h"
+#include "lobefit/fit/sel_fit.h"
+#include "lobefit/fit/sel_slice.h"
 #include "lobefit/fit/starts.h"
 #include "lobefit/measurement/incidence.h"
 
@@ -84,9 +86,9 @@ void FitAll(const Recipe& recipe, const CompareOptions& options, Measurement* me
             ComparedModel* model) {
   const auto start = std::chrono::steady_clock::now();
   *used = WithMetals(recipe, measurement->channels.wavelengths_nm, measurement->channels.size());
-  model->material = Fit(recipe, options.fit, measurement);
+  model->material = FitRecipe(recipe, options.fit, measurement);
   // A reason says that the recipe was chosen automatically.
-  if (!recipe.reason.empty()) {
+  if (!recipe.reason.empty() && !recipe.sel) {
     if (const std::optional<Recipe> alternative = AutomaticAlternative(recipe, model->material)) {
       *used = *alternative;
       model->material = Fit(*used, options.fit, measurement);
@@ -94,7 +96,9 @@ void FitAll(const Recipe& recipe, const CompareOptions& options, Measurement* me
   }
   model->fit_s = Seconds(start);
   model->name = used->name;
-  model->free_parameters = Layout(*used, measurement->channels.names).size();
+  model->free_parameters =
+      used->sel ? model->material.sel->slices.size() * SelFreeParameters(used->sel->lobes, measurement->channels.size())
+                : Layout(*used, measurement->channels.names).size();
 }
 
 // f_r of the model at the samples, [channel][sample].
@@ -142,7 +146,7 @@ FoldResult RunFold(const Comparison& comparison, const Fold& fold, const Recipe*
   try {
     Measurement training = fold.training;
     ComparedModel model = given;
-    if (recipe != nullptr) model.material = Fit(*recipe, options, &training);
+    if (recipe != nullptr) model.material = FitRecipe(*recipe, options, &training);
     result.sum = SumSquares(comparison.metric, comparison.weighting, true, fold.test.samples,
                             PredictModel(model, fold.test.samples, &alone));
   } catch (const InputError& error) {
@@ -161,9 +165,11 @@ std::size_t Least(const std::vector<std::size_t>& eligible, const Value& value) 
 
 std::vector<std::size_t> Eligible(const Comparison& comparison) {
   std::vector<std::size_t> sound, any;
+  const bool only_lobes = std::all_of(comparison.models.begin(), comparison.models.end(),
+                                      [](const ComparedModel& m) { return !m.fitted || m.material.sel.has_value(); });
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
     const ComparedModel& model = comparison.models[m];
-    if (!model.fitted) continue;
+    if (!model.fitted || (model.material.sel && !only_lobes)) continue;
     any.push_back(m);
     const bool judged = comparison.folds == 0 || std::isfinite(model.held_out);
     if (model.material.termination.converged && model.material.termination.determined && judged) sound.push_back(m);
@@ -221,7 +227,7 @@ void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Co
     return;
   }
   std::size_t fitted = 0;
-  for (const ComparedModel& any : models) fitted += any.fitted ? 1 : 0;
+  for (const ComparedModel& any : models) fitted += any.fitted && !any.material.sel ? 1 : 0;
   comparison->reason =
       fmt::format("{} has the least error on held-out incident directions, {:.3g}{}", model.name, model.held_out,
                   eligible.size() < fitted ? ", of those that converged and are determined" : "");

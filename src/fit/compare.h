@@ -72,7 +72,8 @@ struct Comparison {
 // parameters whose held-out mean square exceeds the least one by no more than one standard error of the difference over
 // folds, or by no more than 2 % (1 % in root mean square: less is not worth a parameter); without folds the one with
 // the least BIC. Fits that did not converge or are not determined are recommended only where there is no other. A given
-// material is never recommended. Throws InputError where a recipe cannot be fitted at all, or where a given material
+// material is never recommended, and a table of lobes only among tables: it describes the measured incident directions
+// and is no model of the surface. Throws InputError where a recipe cannot be fitted at all, or where a given material
 // has other channels than the measurement.
 Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMaterial>& given,
                    const CompareOptions& options, Measurement* measurement);

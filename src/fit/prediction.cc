@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lobefit/core/reflectance.h"
+#include "lobefit/core/sel_table.h"
 #include "lobefit/fit/kernel.h"
 #include "lobefit/fit/problem.h"
 
@@ -12,12 +13,25 @@ namespace {
 
 double Sine(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
 
-double Weight(Metric metric, Weighting weighting, bool own_weights, const Samples& samples, std::size_t i) {
-  double weight = own_weights && !samples.weight.empty() ? samples.weight[i] : 1.0;
-  if (weighting == Weighting::kSolidAngle) weight *= samples.solid_angle[i];
-  if (metric == Metric::kNgan || metric == Metric::kLowLog) weight *= Sine(samples.wi_z[i]);
-  if (metric == Metric::kNgan) weight *= Sine(samples.wo_z[i]);
-  return weight;
+// Runs of samples with one incident direction share their lobes.
+void PredictLobes(const SelReflectance& lobes, const Samples& samples, ThreadPool* pool,
+                  std::vector<std::vector<double>>* f_r) {
+  pool->Run(RunCount(samples.size()), [&](std::size_t run) {
+    const std::size_t end = RunBegin(samples.size(), run + 1);
+    std::vector<Vec3> wo;
+    std::vector<std::vector<double>> piece;
+    for (std::size_t begin = RunBegin(samples.size(), run), next = begin; begin < end; begin = next) {
+      wo.clear();
+      const auto same = [&] {
+        return samples.wi_x[next] == samples.wi_x[begin] && samples.wi_y[next] == samples.wi_y[begin] &&
+               samples.wi_z[next] == samples.wi_z[begin];
+      };
+      for (next = begin; next < end && same(); ++next) wo.push_back(samples.wo(next));
+      lobes.Evaluate(samples.wi(begin), wo, &piece);
+      for (std::size_t c = 0; c < piece.size(); ++c)
+        std::copy(piece[c].begin(), piece[c].end(), (*f_r)[c].begin() + static_cast<std::ptrdiff_t>(begin));
+    }
+  });
 }
 
 // Adds the squared residuals of samples [begin, begin + model.size()) in one channel under every metric; each transform
@@ -58,9 +72,21 @@ void AddSquares(const std::vector<std::vector<double>>& weights, const Samples& 
 
 }  // namespace
 
+double SampleWeight(Metric metric, Weighting weighting, bool own_weights, const Samples& samples, std::size_t i) {
+  double weight = own_weights && !samples.weight.empty() ? samples.weight[i] : 1.0;
+  if (weighting == Weighting::kSolidAngle) weight *= samples.solid_angle[i];
+  if (metric == Metric::kNgan || metric == Metric::kLowLog) weight *= Sine(samples.wi_z[i]);
+  if (metric == Metric::kNgan) weight *= Sine(samples.wo_z[i]);
+  return weight;
+}
+
 std::vector<std::vector<double>> Predict(const Material& material, const Samples& samples, ThreadPool* pool) {
   const std::size_t channels = material.channels.size(), runs = RunCount(samples.size());
   std::vector<std::vector<double>> f_r(channels, std::vector<double>(samples.size()));
+  if (material.sel) {
+    PredictLobes(SelReflectance(*material.sel), samples, pool, &f_r);
+    return f_r;
+  }
   const Reflectance reflectance(material.model, material.Values(), channels);
   pool->Run(runs, [&](std::size_t run) {
     const std::size_t begin = RunBegin(samples.size(), run), end = RunBegin(samples.size(), run + 1);
@@ -92,7 +118,7 @@ SquareSum SumSquares(Metric metric, Weighting weighting, bool own_weights, const
       double residual = model[i] - target[i];
       if (transform == Transform::kRelative) residual = target[i] > 0 ? residual / target[i] : std::nan("");
       if (!std::isfinite(residual)) continue;
-      const double weight = Weight(metric, weighting, own_weights, samples, i);
+      const double weight = SampleWeight(metric, weighting, own_weights, samples, i);
       sum.square += weight * residual * residual;
       sum.weight += weight;
       ++sum.residuals;
@@ -115,7 +141,7 @@ std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Sample
       for (std::size_t m = 0; m < metrics; ++m) {
         weights[m].resize(end - begin);
         for (std::size_t i = begin; i < end; ++i)
-          weights[m][i - begin] = Weight(MetricChoices()[m].value, weighting, false, samples, i);
+          weights[m][i - begin] = SampleWeight(MetricChoices()[m].value, weighting, false, samples, i);
       }
       for (std::size_t c = 0; c < f_r.size(); ++c) AddSquares(weights, samples, c, begin, f_r[c], &sums[run]);
     }

@@ -25,8 +25,11 @@ struct SquareSum {
   double MeanSquare() const { return square / weight; }  // NaN where nothing was counted
 };
 
-// Squared residuals of a prediction under a metric, with the weights of a fit: the samples' own (where
-// `own_weights`), their solid angles, and those that belong to the metric (sines of ngan and low-log).
+// Weight of a sample's squared residual: the samples' own (where `own_weights`), its solid angle, and what belongs to
+// the metric (sines of ngan and low-log).
+double SampleWeight(Metric metric, Weighting weighting, bool own_weights, const Samples& samples, std::size_t i);
+
+// Squared residuals of a prediction under a metric, so weighted.
 SquareSum SumSquares(Metric metric, Weighting weighting, bool own_weights, const Samples& samples,
                      const std::vector<std::vector<double>>& f_r);
 

@@ -9,6 +9,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/version.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 namespace {
@@ -97,6 +98,28 @@ Json MinimaToJson(const Material& material) {
   return minima;
 }
 
+Json SelToJson(const SelTable& table) {
+  Json slices = Json::array();
+  for (const SelSlice& slice : table.slices) {
+    Json lobes = Json::array();
+    for (std::size_t l = 0; l < slice.lobes.size(); ++l) {
+      const SelShape& shape = slice.lobes[l];
+      lobes.push_back({{"alpha_x", shape.alpha_x},
+                       {"alpha_y", shape.alpha_y},
+                       {"offset_in_deg", RadiansToDegrees(shape.offset_in)},
+                       {"offset_across_deg", RadiansToDegrees(shape.offset_across)},
+                       {"psi_deg", RadiansToDegrees(shape.psi)},
+                       {"amplitude", slice.amplitude[l]}});
+    }
+    slices.push_back({{"theta_i_deg", RadiansToDegrees(slice.theta_i)},
+                      {"phi_i_deg", RadiansToDegrees(slice.phi_i)},
+                      {"constant", slice.constant},
+                      {"lobes", lobes}});
+  }
+  return {
+      {"quantity", NameOf(table.quantity)}, {"isotropic", table.isotropic}, {"bound", table.bound}, {"slices", slices}};
+}
+
 // Reading: every access names the member in its error.
 class Reader {
  public:
@@ -151,9 +174,64 @@ Model ReadModel(const Reader& reader) {
                            lobe.contains("metal") ? reader.Get<std::string>(lobe, "metal") : ""});
   }
   model.diffuse = reader.GetChoice(json, "diffuse", DiffuseChoices());
-  if (model.lobes.empty()) reader.Fail("model has no lobe");
+  if (model.lobes.empty() && !reader.root().contains("sel")) reader.Fail("model has no lobe");
+  if (model.lobes.empty()) return model;
   if (const std::string why = WhyNotEvaluable(model); !why.empty()) reader.Fail(why);
   return model;
+}
+
+double InRange(const Reader& reader, const Json& object, const char* name, double low, double high) {
+  const double value = reader.Get<double>(object, name);
+  if (!(value >= low && value <= high)) {
+    reader.Fail(
+        fmt::format("member '{}' of the table of lobes is {:g}; it must lie in [{:g}, {:g}]", name, value, low, high));
+  }
+  return value;
+}
+
+std::vector<double> PerChannel(const Reader& reader, const Json& object, const char* name, std::size_t channels) {
+  const std::vector<double> values = reader.Get<std::vector<double>>(object, name);
+  if (values.size() != channels) {
+    reader.Fail(
+        fmt::format("member '{}' of the table of lobes has {} values, {} belong there", name, values.size(), channels));
+  }
+  for (const double value : values) {
+    if (!(value >= 0) || !std::isfinite(value))
+      reader.Fail(fmt::format("member '{}' of the table of lobes is below 0", name));
+  }
+  return values;
+}
+
+SelTable ReadSel(const Reader& reader, std::size_t channels) {
+  const Json& json = reader.Member(reader.root(), "sel");
+  SelTable table;
+  const std::string quantity = reader.Get<std::string>(json, "quantity");
+  table.quantity = quantity == NameOf(SelQuantity::kBrdf) ? SelQuantity::kBrdf : SelQuantity::kBrdfCosineO;
+  if (quantity != NameOf(table.quantity))
+    reader.Fail(fmt::format("quantity '{}' of the table of lobes is not known", quantity));
+  table.isotropic = reader.Get<bool>(json, "isotropic");
+  table.bound = reader.Get<bool>(json, "bound");
+  for (const Json& entry : reader.Member(json, "slices")) {
+    SelSlice slice;
+    slice.theta_i = DegreesToRadians(InRange(reader, entry, "theta_i_deg", 0, 90));
+    slice.phi_i = DegreesToRadians(InRange(reader, entry, "phi_i_deg", -360, 360));
+    slice.constant = PerChannel(reader, entry, "constant", channels);
+    for (const Json& lobe : reader.Member(entry, "lobes")) {
+      SelShape shape;
+      shape.alpha_x = InRange(reader, lobe, "alpha_x", 1e-6, 1);
+      shape.alpha_y = InRange(reader, lobe, "alpha_y", 1e-9, shape.alpha_x);
+      shape.offset_in = DegreesToRadians(InRange(reader, lobe, "offset_in_deg", -180, 180));
+      shape.offset_across = DegreesToRadians(InRange(reader, lobe, "offset_across_deg", -180, 180));
+      shape.psi = DegreesToRadians(InRange(reader, lobe, "psi_deg", -360, 360));
+      slice.lobes.push_back(shape);
+      slice.amplitude.push_back(PerChannel(reader, lobe, "amplitude", channels));
+    }
+    if (!table.slices.empty() && table.slices[0].lobes.size() != slice.lobes.size())
+      reader.Fail("the slices of the table of lobes have different numbers of lobes");
+    table.slices.push_back(slice);
+  }
+  if (table.slices.empty()) reader.Fail("the table of lobes has no slice");
+  return table;
 }
 
 void ReadParameters(const Reader& reader, Material* material) {
@@ -234,7 +312,7 @@ void ReadRest(const Reader& reader, Material* material) {
 }  // namespace
 
 std::string ToJson(const Material& material) {
-  const Json json = {
+  Json json = {
       {"format", "lobefit material"},
       {"format_version", "1.0"},
       {"version", Version()},
@@ -267,6 +345,7 @@ std::string ToJson(const Material& material) {
         {"loss", material.loss},
         {"theta_max_deg", material.theta_max_deg}}},
   };
+  if (material.sel) json["sel"] = SelToJson(*material.sel);
   // Bytes that are not UTF-8 (a file name may hold any) become the replacement character.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -292,6 +371,7 @@ Material MaterialFromJson(const std::string& text, const std::string& file_name)
     material.channels = reader.Get<std::vector<std::string>>(json, "channels");
     material.wavelengths_nm = reader.Get<std::vector<double>>(json, "wavelengths_nm");
     if (material.channels.empty()) reader.Fail("has no channel");
+    if (json.contains("sel")) material.sel = ReadSel(reader, material.channels.size());
     ReadParameters(reader, &material);
     ReadRest(reader, &material);
     return material;
@@ -303,6 +383,23 @@ Material MaterialFromJson(const std::string& text, const std::string& file_name)
 Material ReadMaterial(const std::filesystem::path& path) {
   const MappedFile file(path);
   return MaterialFromJson(std::string(file.bytes()), path.string());
+}
+
+Material ReadModelMaterial(const std::filesystem::path& path) {
+  Material material = ReadMaterial(path);
+  if (material.sel) {
+    throw InputError(
+        path.string() +
+        ": holds a table of squared ellipsoidal lobes, which is no model of the surface; fit a recipe with "
+        "[[lobe]] for that");
+  }
+  return material;
+}
+
+bool LooksLikeMaterial(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  const std::string_view head = file.bytes().substr(0, 256);
+  return !head.empty() && head[0] == '{' && head.find("\"lobefit material\"") != std::string_view::npos;
 }
 
 void WriteMaterial(const Material& material, const std::filesystem::path& path) {

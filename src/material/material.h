@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lobefit/core/model.h"
+#include "lobefit/core/sel_table.h"
 
 namespace lobefit {
 
@@ -52,6 +53,8 @@ struct Source {
 
 struct Material {
   Model model;
+  // A table of lobes in place of a model, whose lobes and parameters are then empty.
+  std::optional<SelTable> sel;
   std::vector<std::string> channels;
   std::vector<double> wavelengths_nm;
   std::vector<FittedParameter> parameters;  // in the order of Parameters(model)

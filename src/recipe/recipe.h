@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lobefit/core/model.h"
+#include "lobefit/core/sel_table.h"
 
 namespace lobefit {
 
@@ -42,10 +43,21 @@ struct ParameterRecipe {
   bool shared = false;  // one value for all channels
 };
 
+// A table of squared ellipsoidal lobes in place of a model.
+struct SelRecipe {
+  std::size_t lobes = 1;  // 1 to 3
+  SelQuantity quantity = SelQuantity::kBrdfCosineO;
+  bool bound = false;  // lobes on or above all samples, with the least integral
+  // Expected change of shapes from one incident direction to the next, per radian: of the logarithms of the widths and
+  // of the offsets in radians. Smaller is smoother.
+  double drift = 3;
+};
+
 struct Recipe {
   std::string name;
   std::string reason;  // why it was chosen, where it was chosen automatically
-  Model model;
+  Model model;         // without lobes where `sel` is set
+  std::optional<SelRecipe> sel;
   std::vector<ParameterRecipe> parameters;  // in the order of Parameters(model)
   // The defaults give the spheres that look most like the tables' (fits/README.md).
   Metric metric = Metric::kCubeRoot;

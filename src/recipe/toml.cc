@@ -175,6 +175,56 @@ void ReadLoss(const toml::table& root, const Place& place, Recipe* recipe) {
   }
 }
 
+// A recipe of a table of lobes: what belongs to a model has no place in it.
+Recipe ReadSelRecipe(const toml::table& root, const Place& place) {
+  const toml::table& table = *Table(root, "sel", place);
+  CheckKeys(root, {"name", "metric", "weighting", "theta_max_deg", "sel"}, "of a recipe with [sel]", place);
+  CheckKeys(table, {"lobes", "quantity", "bound", "drift"}, "of [sel]", place);
+  SelRecipe sel;
+  if (const std::optional<double> lobes = Number(table, "lobes", place)) {
+    if (*lobes != 1 && *lobes != 2 && *lobes != 3)
+      place.Fail(table.get("lobes")->source(), fmt::format("lobes = {:g}: allowed are 1, 2 and 3", *lobes));
+    sel.lobes = static_cast<std::size_t>(*lobes);
+  }
+  static const std::vector<Choice<SelQuantity>> quantities = {
+      {SelQuantity::kBrdf, NameOf(SelQuantity::kBrdf), ""},
+      {SelQuantity::kBrdfCosineO, NameOf(SelQuantity::kBrdfCosineO), ""}};
+  ReadChoice(table, "quantity", quantities, place, &sel.quantity);
+  if (const toml::node* bound = table.get("bound")) {
+    if (!bound->is_boolean()) place.Fail(bound->source(), "'bound' must be true or false");
+    sel.bound = *bound->value<bool>();
+  }
+  if (const std::optional<double> drift = Number(table, "drift", place)) {
+    if (*drift <= 0) place.Fail(table.get("drift")->source(), "'drift' must be above 0");
+    sel.drift = *drift;
+  }
+  Model model;
+  model.diffuse = Diffuse::kNone;
+  Recipe recipe = DefaultRecipe(model, std::filesystem::path(place.file).stem().string());
+  recipe.sel = sel;
+  return recipe;
+}
+
+// The part of a recipe that names a model.
+Recipe ReadModelRecipe(const toml::table& root, const Place& place) {
+  CheckKeys(root,
+            {"name", "metric", "weighting", "loss", "theta_max_deg", "wavelengths_nm", "diffuse", "lobe", "parameters",
+             "sel"},
+            "of a recipe", place);
+  Model model;
+  if (const toml::node* lobes = root.get("lobe")) {
+    const toml::array* array = lobes->as_array();
+    if (array == nullptr || !array->is_array_of_tables() || array->size() > 3) {
+      place.Fail(lobes->source(), "lobes are written as [[lobe]], at most three");
+    }
+    for (const toml::node& lobe : *array) model.lobes.push_back(ReadLobe(*lobe.as_table(), place));
+  }
+  if (model.lobes.empty()) place.Fail(root.source(), "a recipe needs at least one [[lobe]], or [sel]");
+  ReadChoice(root, "diffuse", DiffuseChoices(), place, &model.diffuse);
+  if (const std::string why = WhyNotEvaluable(model); !why.empty()) place.Fail(root.get("lobe")->source(), why);
+  return DefaultRecipe(model, std::filesystem::path(place.file).stem().string());
+}
+
 }  // namespace
 
 Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
@@ -185,21 +235,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
   } catch (const toml::parse_error& error) {
     place.Fail(error.source(), std::string(error.description()));
   }
-  CheckKeys(root,
-            {"name", "metric", "weighting", "loss", "theta_max_deg", "wavelengths_nm", "diffuse", "lobe", "parameters"},
-            "of a recipe", place);
-  Model model;
-  if (const toml::node* lobes = root.get("lobe")) {
-    const toml::array* array = lobes->as_array();
-    if (array == nullptr || !array->is_array_of_tables() || array->size() > 3) {
-      place.Fail(lobes->source(), "lobes are written as [[lobe]], at most three");
-    }
-    for (const toml::node& lobe : *array) model.lobes.push_back(ReadLobe(*lobe.as_table(), place));
-  }
-  if (model.lobes.empty()) place.Fail(root.source(), "a recipe needs at least one [[lobe]]");
-  ReadChoice(root, "diffuse", DiffuseChoices(), place, &model.diffuse);
-  if (const std::string why = WhyNotEvaluable(model); !why.empty()) place.Fail(root.get("lobe")->source(), why);
-  Recipe recipe = DefaultRecipe(model, std::filesystem::path(file_name).stem().string());
+  Recipe recipe = root.contains("sel") ? ReadSelRecipe(root, place) : ReadModelRecipe(root, place);
   if (const toml::node* name = root.get("name")) {
     if (!name->is_string()) place.Fail(name->source(), "'name' must be a string");
     recipe.name = *name->value<std::string>();
@@ -214,7 +250,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
   }
   recipe.wavelengths_nm = Numbers(root, "wavelengths_nm", true, 1, place);
   if (const toml::table* table = Table(root, "parameters", place)) {
-    const std::vector<Parameter> parameters = Parameters(model);
+    const std::vector<Parameter> parameters = Parameters(recipe.model);
     std::vector<std::string> names;
     for (const Parameter& parameter : parameters) names.push_back(parameter.json_name);
     CheckKeys(*table, names, "of this model's parameters", place);
@@ -232,6 +268,14 @@ Recipe ReadRecipe(const std::filesystem::path& path) {
 }
 
 std::string ToToml(const Recipe& recipe) {
+  if (recipe.sel) {
+    return fmt::format(
+        "name = \"{}\"\nmetric = \"{}\"\nweighting = \"{}\"\ntheta_max_deg = {}\n\n[sel]\nlobes = {}\nquantity = "
+        "\"{}\"\nbound = {}\ndrift = {}\n",
+        recipe.name, NameOf(MetricChoices(), recipe.metric), NameOf(WeightingChoices(), recipe.weighting),
+        FormatDouble(RadiansToDegrees(recipe.theta_max)), recipe.sel->lobes, NameOf(recipe.sel->quantity),
+        recipe.sel->bound, FormatDouble(recipe.sel->drift));
+  }
   std::string text =
       fmt::format("name = \"{}\"\nmetric = \"{}\"\nweighting = \"{}\"\ntheta_max_deg = {}\ndiffuse = \"{}\"\n",
                   recipe.name, NameOf(MetricChoices(), recipe.metric), NameOf(WeightingChoices(), recipe.weighting),

@@ -20,6 +20,11 @@ TEST_F(BadInput, EveryMistakeHasItsExitCodeAndOneMessage) {
   WriteWholeFile(folder_ / "noise.bin", std::string(1000, '\x7f'));
   WriteWholeFile(folder_ / "key.toml", "[[lobe]]\nnfd = \"ggx\"\n");
   WriteWholeFile(folder_ / "not.material.json", "{}");
+  WriteWholeFile(folder_ / "four.toml", "[sel]\nlobes = 4\n");
+  WriteWholeFile(folder_ / "mixed.toml", "diffuse = \"none\"\n[sel]\nlobes = 1\n");
+  WriteWholeFile(folder_ / "selkey.toml", "[sel]\nlobs = 1\n");
+  WriteWholeFile(folder_ / "quantity.toml", "[sel]\nquantity = \"cos\"\n");
+  WriteWholeFile(folder_ / "few.csv", "theta_i,phi_i,theta_o,phi_o,value\n10,0,20,0,1\n10,0,30,0,1\n20,0,30,0,1\n");
   std::filesystem::create_directories(folder_ / "folder");
   const std::string good = "$SOURCE/samples/satin_plastic.csv";
   const std::vector<std::string> before = Files();
@@ -52,6 +57,14 @@ TEST_F(BadInput, EveryMistakeHasItsExitCodeAndOneMessage) {
       {"lobefit compare $SOURCE/samples/satin_plastic.csv --recipes ggx,key.toml", 3, "key.toml:2: unknown key 'nfd'"},
       {"lobefit compare $SOURCE/samples/satin_plastic.csv --with not.material.json", 3, "is not a material document"},
       {"lobefit compare $SOURCE/samples/satin_plastic.csv --folds -1", 2, "--folds"},
+      {"lobefit fit $SOURCE/samples/satin_plastic.csv --recipe four.toml", 3,
+       "four.toml:2: lobes = 4: allowed are 1, 2"},
+      {"lobefit fit $SOURCE/samples/satin_plastic.csv --recipe mixed.toml", 3, "mixed.toml:1: unknown key 'diffuse'"},
+      {"lobefit fit $SOURCE/samples/satin_plastic.csv --recipe selkey.toml", 3,
+       "selkey.toml:2: unknown key 'lobs' of [sel] (did you mean 'lobes'?)"},
+      {"lobefit fit $SOURCE/samples/satin_plastic.csv --recipe quantity.toml", 3,
+       "quantity.toml:2: quantity = 'cos' is unknown; allowed: f, f-cos-o"},
+      {"lobefit fit few.csv --recipe sel", 3, "take fewer lobes"},
       {"lobefit report not.material.json $SOURCE/samples/satin_plastic.csv", 3,
        "not.material.json: is not a material document"},
       {"lobefit synth $SOURCE/fits/ggx.toml --out x.csv", 3, "parameter 'alpha_x' has 0 values"},
