@@ -19,13 +19,13 @@ Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 std::string Cell(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
 
 // Ends in words: whether a fit is to be trusted.
-std::string Ending(const ComparedModel& model) {
+std::string Ending(const JudgedModel& model) {
   if (!model.fitted) return "given";
   if (!model.material.termination.converged) return "NOT CONVERGED";
   return model.material.termination.determined ? "converged" : "NOT DETERMINED";
 }
 
-Json ModelToJson(const ComparedModel& model) {
+Json ModelToJson(const JudgedModel& model) {
   Json errors = Json::object(), folds = Json::array();
   for (const MetricError& error : model.errors) errors[error.metric] = Number(error.rms);
   for (const double square : model.fold_mean_square) folds.push_back(Number(std::sqrt(square)));
@@ -56,7 +56,7 @@ std::string ComparisonText(const Comparison& comparison, const ComparisonContext
                       NameOf(WeightingChoices(), comparison.weighting));
   std::size_t width = 6;
   double least_aic = std::numeric_limits<double>::infinity(), least_bic = least_aic;
-  for (const ComparedModel& model : comparison.models) {
+  for (const JudgedModel& model : comparison.models) {
     width = std::max(width, model.name.size());
     if (!model.fitted) continue;
     least_aic = std::min(least_aic, model.aic);
@@ -66,7 +66,7 @@ std::string ComparisonText(const Comparison& comparison, const ComparisonContext
   for (const Choice<Metric>& choice : MetricChoices()) text += fmt::format(" {:>9}", choice.name);
   text += fmt::format(" {:>10} {:>10} {:>9} {:>8}\n", "AIC", "BIC", "held-out", "time/s");
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
-    const ComparedModel& model = comparison.models[m];
+    const JudgedModel& model = comparison.models[m];
     text += fmt::format("{} {:<{}} {:>5}", m == comparison.recommended ? '>' : ' ', model.name, width,
                         model.free_parameters);
     for (const MetricError& error : model.errors) text += fmt::format(" {:>9}", Cell(error.rms));
@@ -85,7 +85,7 @@ std::string ComparisonText(const Comparison& comparison, const ComparisonContext
         "direction are not, so both favour the richer model more than they should.\n";
   }
   for (const std::string& remark : comparison.remarks) text += "Note: " + remark + '\n';
-  for (const ComparedModel& model : comparison.models) {
+  for (const JudgedModel& model : comparison.models) {
     for (const std::string& remark : model.remarks) text += fmt::format("Note: {}: {}\n", model.name, remark);
   }
   return text;
@@ -93,7 +93,7 @@ std::string ComparisonText(const Comparison& comparison, const ComparisonContext
 
 std::string ComparisonJson(const Comparison& comparison, const ComparisonContext& context) {
   Json models = Json::array();
-  for (const ComparedModel& model : comparison.models) models.push_back(ModelToJson(model));
+  for (const JudgedModel& model : comparison.models) models.push_back(ModelToJson(model));
   const Json json = {
       {"format", "lobefit comparison"},
       {"format_version", "1.0"},

@@ -1,6 +1,7 @@
 // lobefit compare: several recipes on one measurement, side by side; the recommended one becomes NAME.material.json.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "lobefit/export/import.h"
 #include "lobefit/fit/compare.h"
 #include "lobefit/material/json.h"
+#include "lobefit/report/comparison.h"
 
 namespace lobefit {
 namespace {
@@ -26,6 +28,7 @@ struct CompareVerb {
   CompareOptions compare;
   std::string file, out = ".", name, recipes;
   std::vector<std::string> with;
+  bool no_report = false;
 };
 
 // What is worth comparing on a measurement: from the simplest model to the richest that it can determine, and a second
@@ -84,6 +87,33 @@ GivenMaterial LoadGiven(const std::string& path) {
   return given;
 }
 
+// The picture of the recommended model and the next best ones by held-out error; tables of lobes and foreign materials have
+// no place in its panels. Empty where no picture was drawn.
+std::string DrawPicture(const Comparison& comparison, const Measurement& measurement, const std::filesystem::path& path,
+                        int threads) {
+  std::vector<std::size_t> order;
+  for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+    if (!comparison.models[m].material.sel && !comparison.models[m].brdf) order.push_back(m);
+  }
+  const auto rank = [&](std::size_t m) {
+    const double held_out = comparison.models[m].held_out;
+    return m == comparison.recommended ? -1.0 : std::isfinite(held_out) ? held_out : 1e300;
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+  if (order.size() > kMostCompared) order.resize(kMostCompared);
+  std::vector<ComparedModel> models;
+  for (const std::size_t m : order) {
+    const JudgedModel& model = comparison.models[m];
+    models.push_back({&model.material, std::filesystem::path(model.name).filename().string(),
+                      std::isfinite(model.held_out) ? fmt::format("held-out {:.3g}", model.held_out) : ""});
+  }
+  if (models.empty()) return "";
+  ReportOptions options;
+  options.threads = threads;
+  WriteComparisonPng(models, measurement, path, options);
+  return fmt::format("Picture: {}\n", path.string());
+}
+
 int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   std::error_code error;
   const std::filesystem::path folder = verb.out;
@@ -107,13 +137,17 @@ int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   material.recipe_reason = comparison.reason;
   const std::string name = verb.name.empty() ? std::filesystem::path(verb.file).stem().string() : verb.name;
   const std::filesystem::path document = folder / (name + ".material.json");
+  // The document first: it is kept even where drawing fails.
   WriteMaterial(material, document);
+  std::string picture;
+  if (!verb.no_report)
+    picture = DrawPicture(comparison, measurement, folder / (name + ".compare.png"), options.fit.threads);
   const ComparisonContext context = {measurement.source, measurement.sha256, measurement.format, common.command,
                                      document.string()};
   if (common.json) {
     fmt::print("{}", ComparisonJson(comparison, context));
   } else {
-    fmt::print("{}Result:  {}\n", ComparisonText(comparison, context), document.string());
+    fmt::print("{}Result:  {}\n{}", ComparisonText(comparison, context), document.string(), picture);
   }
   if (material.termination.converged && material.termination.determined) return kExitDone;
   std::fputs("lobefit: no recipe converged and is determined by the measurement; try a simpler one in --recipes\n",
@@ -140,6 +174,7 @@ std::function<int()> SetUpCompare(CLI::App* app, CommonOptions* common) {
       ->check(CLI::Range(0, 1000));
   app->add_option("--out", verb->out, "folder of the results (default: the current one)");
   app->add_option("--name", verb->name, "NAME of the results (default: the file's name without its ending)");
+  app->add_flag("--no-report", verb->no_report, "write no picture");
   app->add_option("--starts", verb->compare.fit.starts, "descents from the best-ranked starts (default 8)")
       ->check(CLI::Range(1, 100000));
   app->add_option("--seed", verb->compare.fit.seed, "seed of the folds and subsamples (default 1)");

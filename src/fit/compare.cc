@@ -83,7 +83,7 @@ std::vector<Fold> MakeFolds(const Measurement& measurement, const CompareOptions
 }
 
 void FitAll(const Recipe& recipe, const CompareOptions& options, Measurement* measurement, Recipe* used,
-            ComparedModel* model) {
+            JudgedModel* model) {
   const auto start = std::chrono::steady_clock::now();
   *used = WithMetals(recipe, measurement->channels.wavelengths_nm, measurement->channels.size());
   model->material = FitRecipe(recipe, options.fit, measurement);
@@ -102,7 +102,7 @@ void FitAll(const Recipe& recipe, const CompareOptions& options, Measurement* me
 }
 
 // f_r of the model at the samples, [channel][sample].
-std::vector<std::vector<double>> PredictModel(const ComparedModel& model, const Samples& samples, ThreadPool* pool) {
+std::vector<std::vector<double>> PredictModel(const JudgedModel& model, const Samples& samples, ThreadPool* pool) {
   if (!model.brdf) return Predict(model.material, samples, pool);
   const std::size_t channels = samples.values.size(), count = samples.size();
   std::vector<std::vector<double>> f_r(channels, std::vector<double>(count));
@@ -119,7 +119,7 @@ std::vector<std::vector<double>> PredictModel(const ComparedModel& model, const 
 
 // Errors on all samples, and the information criteria of fitted models.
 void Judge(const Comparison& comparison, const Measurement& measurement, double black, ThreadPool* pool,
-           ComparedModel* model) {
+           JudgedModel* model) {
   const Samples& samples = measurement.samples;
   const std::vector<std::vector<double>> f_r = PredictModel(*model, samples, pool);
   model->errors = ErrorsUnderAllMetrics(comparison.weighting, samples, f_r, pool);
@@ -139,13 +139,13 @@ struct FoldResult {
 };
 
 FoldResult RunFold(const Comparison& comparison, const Fold& fold, const Recipe* recipe, const FitOptions& options,
-                   const ComparedModel& given) {
+                   const JudgedModel& given) {
   FoldResult result;
   const auto start = std::chrono::steady_clock::now();
   ThreadPool alone(1);
   try {
     Measurement training = fold.training;
-    ComparedModel model = given;
+    JudgedModel model = given;
     if (recipe != nullptr) model.material = FitRecipe(*recipe, options, &training);
     result.sum = SumSquares(comparison.metric, comparison.weighting, true, fold.test.samples,
                             PredictModel(model, fold.test.samples, &alone));
@@ -166,9 +166,9 @@ std::size_t Least(const std::vector<std::size_t>& eligible, const Value& value) 
 std::vector<std::size_t> Eligible(const Comparison& comparison) {
   std::vector<std::size_t> sound, any;
   const bool only_lobes = std::all_of(comparison.models.begin(), comparison.models.end(),
-                                      [](const ComparedModel& m) { return !m.fitted || m.material.sel.has_value(); });
+                                      [](const JudgedModel& m) { return !m.fitted || m.material.sel.has_value(); });
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
-    const ComparedModel& model = comparison.models[m];
+    const JudgedModel& model = comparison.models[m];
     if (!model.fitted || (model.material.sel && !only_lobes)) continue;
     any.push_back(m);
     const bool judged = comparison.folds == 0 || std::isfinite(model.held_out);
@@ -177,7 +177,7 @@ std::vector<std::size_t> Eligible(const Comparison& comparison) {
   return sound.empty() ? any : sound;
 }
 
-double MeanOverFolds(const ComparedModel& model) {
+double MeanOverFolds(const JudgedModel& model) {
   return std::accumulate(model.fold_mean_square.begin(), model.fold_mean_square.end(), 0.0) /
          static_cast<double>(model.fold_mean_square.size());
 }
@@ -191,7 +191,7 @@ void RecommendByBic(const std::vector<std::size_t>& eligible, Comparison* compar
 }
 
 // Mean and standard error over folds of the difference to the best model.
-void SetExcess(const ComparedModel& best, ComparedModel* model) {
+void SetExcess(const JudgedModel& best, JudgedModel* model) {
   const std::size_t folds = best.fold_mean_square.size();
   const auto n = static_cast<double>(folds);
   model->excess = MeanOverFolds(*model) - MeanOverFolds(best);
@@ -204,11 +204,11 @@ void SetExcess(const ComparedModel& best, ComparedModel* model) {
 }
 
 void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Comparison* comparison) {
-  std::vector<ComparedModel>& models = comparison->models;
+  std::vector<JudgedModel>& models = comparison->models;
   const std::size_t best = Least(eligible, [&](std::size_t m) { return MeanOverFolds(models[m]); });
-  for (ComparedModel& model : models) SetExcess(models[best], &model);
+  for (JudgedModel& model : models) SetExcess(models[best], &model);
   const double least = MeanOverFolds(models[best]);
-  const auto tolerance = [&](const ComparedModel& model) {
+  const auto tolerance = [&](const JudgedModel& model) {
     return std::max({model.excess_error, kWorthNothing * least, kRounding * kRounding * black * black});
   };
   std::size_t chosen = best;
@@ -217,7 +217,7 @@ void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Co
     if (simpler && models[m].excess <= tolerance(models[m])) chosen = m;
   }
   comparison->recommended = chosen;
-  const ComparedModel& model = models[chosen];
+  const JudgedModel& model = models[chosen];
   if (chosen != best) {
     comparison->reason = fmt::format(
         "{} predicts held-out incident directions with an error of {:.3g}; the least is {:.3g}, of {} with {} free "
@@ -227,7 +227,7 @@ void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Co
     return;
   }
   std::size_t fitted = 0;
-  for (const ComparedModel& any : models) fitted += any.fitted && !any.material.sel ? 1 : 0;
+  for (const JudgedModel& any : models) fitted += any.fitted && !any.material.sel ? 1 : 0;
   comparison->reason =
       fmt::format("{} has the least error on held-out incident directions, {:.3g}{}", model.name, model.held_out,
                   eligible.size() < fitted ? ", of those that converged and are determined" : "");
@@ -236,7 +236,7 @@ void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Co
     if (models[m].free_parameters < model.free_parameters) simpler.push_back(m);
   }
   if (simpler.empty()) return;
-  const ComparedModel& next = models[Least(simpler, [&](std::size_t m) { return MeanOverFolds(models[m]); })];
+  const JudgedModel& next = models[Least(simpler, [&](std::size_t m) { return MeanOverFolds(models[m]); })];
   comparison->reason +=
       fmt::format(", and no simpler recipe comes within one standard error of it (the nearest, {}: {:.3g})", next.name,
                   next.held_out);
@@ -279,7 +279,7 @@ Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMa
   std::vector<Recipe> used(recipes.size());
   comparison.models.resize(recipes.size() + given.size());
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
-    ComparedModel& model = comparison.models[m];
+    JudgedModel& model = comparison.models[m];
     if (m < recipes.size()) {
       FitAll(recipes[m], options, measurement, &used[m], &model);
     } else {
@@ -312,7 +312,7 @@ Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMa
     progress.Advance();
   });
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
-    ComparedModel& model = comparison.models[m];
+    JudgedModel& model = comparison.models[m];
     SquareSum total;
     for (std::size_t k = 0; k < folds.size(); ++k) {
       const FoldResult& result = results[m * folds.size() + k];

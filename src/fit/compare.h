@@ -37,7 +37,7 @@ struct GivenMaterial {
   BrdfFunction brdf = nullptr;
 };
 
-struct ComparedModel {
+struct JudgedModel {
   std::string name;
   bool fitted = true;  // false: a given material
   Material material;
@@ -61,9 +61,9 @@ struct Comparison {
   Weighting weighting = Weighting::kCells;
   double theta_max = 0;  // radians
   std::size_t samples = 0, samples_read = 0, residuals = 0, incidences = 0, folds = 0, held_out_samples = 0;
-  std::vector<ComparedModel> models;  // in the order given, given materials last
-  std::size_t recommended = 0;        // index into models
-  std::string reason;                 // of the recommendation, a sentence
+  std::vector<JudgedModel> models;  // in the order given, given materials last
+  std::size_t recommended = 0;      // index into models
+  std::string reason;               // of the recommendation, a sentence
   std::vector<std::string> remarks;
 };
 

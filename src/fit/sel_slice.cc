@@ -96,15 +96,19 @@ class Objective {
   }
 
   Coordinates Clamped(Coordinates u) const {
-    for (Eigen::Index l = 0; l < lobes_; ++l) {
-      double* x = u.data() + kShape * l;
-      x[0] = std::clamp(x[0], -kMaxT, kMaxT);
-      x[1] = std::clamp(x[1], -kMaxS, kMaxS);
-      x[2] = std::clamp(x[2], -kMaxOffset, kMaxOffset);
-      x[3] = std::clamp(x[3], -kMaxOffset, kMaxOffset);
-    }
-    for (Eigen::Index k = kShape * lobes_; k < size(); ++k) u(k) = std::clamp(u(k), kMinLog, kMaxLog);
+    for (Eigen::Index k = 0; k < size(); ++k) u(k) = std::clamp(u(k), Low(k), High(k));
     return u;
+  }
+
+  // Takes coordinates that the descent presses against a limit out of the step, so that the others go on at full speed.
+  void Hold(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const {
+    for (Eigen::Index k = 0; k < size(); ++k) {
+      const bool held = (u(k) <= Low(k) && (*gradient)(k) > 0) || (u(k) >= High(k) && (*gradient)(k) < 0);
+      if (!held) continue;
+      hessian->row(k).setZero();
+      hessian->col(k).setZero();
+      (*gradient)(k) = 0;
+    }
   }
 
   SelSlice ToSlice(const Coordinates& u) const {
@@ -210,6 +214,13 @@ class Objective {
   }
 
  private:
+  double High(Eigen::Index k) const {
+    if (k >= kShape * lobes_) return kMaxLog;
+    constexpr double kHigh[kShape] = {kMaxT, kMaxS, kMaxOffset, kMaxOffset, 1e9};
+    return kHigh[k % kShape];
+  }
+  double Low(Eigen::Index k) const { return k >= kShape * lobes_ ? kMinLog : -High(k); }
+
   using Features = std::array<double, 5>;
   static Features FeaturesOf(const SelShape& shape) {
     const double x = std::log(shape.alpha_x), y = std::log(shape.alpha_y), half = 0.5 * (x - y);
@@ -345,10 +356,12 @@ SelSliceFit FitSelSlice(const SelSamples& samples, const SelSlice& start, const 
   while (fit.iterations < options.max_iterations && !fit.converged && damping < 1e12) {
     ++fit.iterations;
     Eigen::MatrixXd damped = hessian;
+    Eigen::VectorXd slope = gradient;
+    objective.Hold(u, &damped, &slope);
     const double floor = 1e-12 * std::max(hessian.diagonal().maxCoeff(), 1e-300);
-    damped.diagonal() += damping * hessian.diagonal().cwiseMax(floor);
+    damped.diagonal() += damping * damped.diagonal().cwiseMax(floor).eval();
     damped.diagonal().array() += floor;
-    const Coordinates next = objective.Clamped(u - damped.ldlt().solve(gradient));
+    const Coordinates next = objective.Clamped(u - damped.ldlt().solve(slope));
     const double sum_squares = objective.SumSquares(next, nullptr, nullptr);
     const double value = sum_squares + objective.Pulls(next, nullptr, nullptr);
     if (!(value <= fit.objective)) {
@@ -357,7 +370,7 @@ SelSliceFit FitSelSlice(const SelSamples& samples, const SelSlice& start, const 
       damping *= 8;
       continue;
     }
-    fit.converged = fit.objective - value <= 1e-9 * fit.objective;
+    fit.converged = fit.objective - value <= 1e-7 * fit.objective;
     u = next;
     damping = std::max(damping / 5, 1e-12);
     fit.sum_squares = objective.SumSquares(u, &hessian, &gradient);

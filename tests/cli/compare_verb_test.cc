@@ -18,6 +18,7 @@ TEST_F(CompareVerb, RecommendsTheTruthAndWritesItsDocument) {
   EXPECT_EQ(json["recommended"]["name"], "ellipsoid");
   EXPECT_EQ(json["models"].size(), 4U);
   EXPECT_EQ(json["folds"], 5);
+  EXPECT_THAT(Files(), testing::ElementsAre("brushed_metal.compare.png", "brushed_metal.material.json"));
   const std::string document = ReadWholeFile(folder_ / "brushed_metal.material.json");
   EXPECT_TRUE(FollowsSchema(document));
   EXPECT_EQ(nlohmann::json::parse(document)["recipe"]["name"], "ellipsoid");
@@ -45,6 +46,32 @@ TEST_F(CompareVerb, ComparesWithAMaterialMadeByHand) {
   EXPECT_EQ(models[1]["name"], "mine.material.json");
   EXPECT_FALSE(models[1]["fitted"].get<bool>());
   EXPECT_THAT(models[1]["remarks"][0].get<std::string>(), testing::HasSubstr("was fitted to this measurement"));
+}
+
+TEST_F(CompareVerb, ShowsATableOfLobesBesideModels) {
+  const ProgramResult fit = Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe sel --json --no-report");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_TRUE(FollowsSchema(fit.out));
+  EXPECT_EQ(nlohmann::json::parse(fit.out)["sel"]["slices"].size(), 5U);
+  const ProgramResult report = Shell("lobefit report satin_plastic.material.json $SOURCE/samples/satin_plastic.csv");
+  EXPECT_EQ(report.exit_code, 3);
+  EXPECT_THAT(report.err, testing::HasSubstr("no model of the surface"));
+  const ProgramResult result =
+      Shell("lobefit compare $SOURCE/samples/satin_plastic.csv --recipes sel,ggx --json --no-report");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(FollowsSchema(result.out, kComparisonSchema));
+  EXPECT_EQ(nlohmann::json::parse(result.out)["recommended"]["name"], "ggx");
+}
+
+TEST_F(CompareVerb, LobesCanBeFittedToAMaterial) {
+  ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --no-report --name mine").exit_code, 0);
+  const ProgramResult result = Shell("lobefit fit mine.material.json --recipe sel --theta-i 20:40");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, testing::HasSubstr("3 incident directions, 2 squared ellipsoidal lobes"));
+  EXPECT_THAT(Files(), testing::Contains("mine.sel.material.json"));
+  const ProgramResult without = Shell("lobefit fit mine.material.json");
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_THAT(without.err, testing::HasSubstr("add --recipe sel"));
 }
 
 TEST_F(CompareVerb, SaysWhyThereIsNoHeldOutErrorForOneIncidence) {

@@ -40,7 +40,7 @@ TEST(Compare, RecommendsTwoLobesWhereThereAreTwo) {
     Measurement measurement = Synthetic(TwoLobes(), StandardLayout(), noise, 3);
     const Comparison comparison = Compare(OneAndTwoLobes(), {}, {}, &measurement);
     EXPECT_EQ(Recommended(comparison), "two") << noise << " " << comparison.reason;
-    const ComparedModel &two = comparison.models[0], &one = comparison.models[1];
+    const JudgedModel &two = comparison.models[0], &one = comparison.models[1];
     EXPECT_LT(two.held_out, 0.5 * one.held_out) << noise;
     EXPECT_LT(two.aic, one.aic) << noise;
     EXPECT_LT(two.bic, one.bic) << noise;
@@ -66,7 +66,7 @@ TEST(Compare, RecommendsTheSimplerOfTwoThatPredictAlike) {
 TEST(Compare, CriteriaFollowTheirDefinition) {
   Measurement measurement = Synthetic(TwoLobes(), StandardLayout(), 0.05, 3);
   const Comparison comparison = Compare(OneAndTwoLobes(), {}, {}, &measurement);
-  for (const ComparedModel& model : comparison.models) {
+  for (const JudgedModel& model : comparison.models) {
     const double n = static_cast<double>(comparison.residuals), k = static_cast<double>(model.free_parameters) + 1;
     const double deviance = n * std::log(2 * model.material.cost / n);
     EXPECT_NEAR(model.aic, deviance + 2 * k, 1e-6 * std::fabs(deviance)) << model.name;
@@ -80,7 +80,7 @@ TEST(Compare, CriteriaFollowTheirDefinition) {
 TEST(Compare, ErrorsAreThoseOfTheFit) {
   Measurement measurement = Synthetic(TwoLobes(), StandardLayout(), 0.05, 3);
   const Comparison comparison = Compare(OneAndTwoLobes(), {}, {}, &measurement);
-  for (const ComparedModel& model : comparison.models) {
+  for (const JudgedModel& model : comparison.models) {
     ASSERT_EQ(model.errors.size(), model.material.errors.size());
     for (std::size_t i = 0; i < model.errors.size(); ++i) {
       EXPECT_NEAR(model.errors[i].rms, model.material.errors[i].rms, 1e-10 * model.errors[i].rms) << model.name;
