@@ -58,7 +58,7 @@ ImportedMaterial ImportMerl(std::string_view bytes) {
 }
 
 ImportedMaterial ImportDocument(const std::filesystem::path& path) {
-  const Material material = ReadMaterial(path);
+  const Material material = ReadModelMaterial(path);
   const auto reflectance =
       std::make_shared<const Reflectance>(material.model, material.Values(), material.channels.size());
   return {"json",
