@@ -54,7 +54,7 @@ void SynthesisOptions::AddTo(CLI::App* app) {
 }
 
 Truth SynthesisOptions::LoadTruth(const std::string& source) const {
-  if (source.ends_with(".json")) return TruthOf(ReadMaterial(source));
+  if (source.ends_with(".json")) return TruthOf(ReadModelMaterial(source));
   std::vector<std::string> channels;
   for (const std::string_view name : Split(channels_, ',')) channels.emplace_back(Trim(name));
   return TruthOf(LoadRecipe(source), channels, source);
