@@ -37,22 +37,22 @@ std::vector<int> ActiveColumns(const Layout& layout, std::size_t c, const std::v
   return columns;
 }
 
-// (1 - P)^(-1/2) r with P = B B^T, all eigenvalues in [0, 1): the binomial series. Where a sample is all that
-// determines some direction the series does not converge and is cut: its residual is zero there anyway.
+// (1 - P)^-1 r with P = B B^T, all eigenvalues in [0, 1): the geometric series. Where a sample is all that determines
+// some direction the series does not converge and is cut: its residual is zero there anyway.
 Eigen::VectorXd Inflated(const Eigen::MatrixXd& b, const Eigen::VectorXd& r) {
   constexpr int kMostTerms = 60;
   Eigen::VectorXd term = r, sum = r;
   for (int k = 1; k <= kMostTerms; ++k) {
-    const Eigen::VectorXd next = b * (b.transpose() * term);
-    term = next * ((k - 0.5) / k);
+    term = b * (b.transpose() * term);
     sum += term;
     if (term.squaredNorm() <= 1e-12 * sum.squaredNorm()) break;
   }
   return sum;
 }
 
-// With leverages: residuals of a sample are inflated by (1 - P_ii)^(-1/2), since a fit bends towards the samples that
-// weigh most in it and leaves them too small residuals [MacKinnon and White 1985, HC2].
+// With leverages: residuals of a sample are inflated by (1 - P_ii)^-1, since a fit bends towards the samples that weigh
+// most in it and leaves them too small residuals [MacKinnon and White 1985, HC3]. With the power -1/2 (HC2) alpha_x of
+// a metal with few samples in its highlight was covered in 93.3 % instead of 93.5 % of 1000 trials.
 Meat SumWithLeverages(const Problem& problem, const Layout& layout, const std::vector<double>& u,
                       const std::vector<int>& active, const Eigen::MatrixXd& whitening, const Incidences& incidences,
                       ThreadPool* pool) {

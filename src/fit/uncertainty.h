@@ -13,7 +13,7 @@
 namespace lobefit {
 
 // Covariances of the solver's coordinates: sandwiches H^-1 B H^-1 with H = J^T J and B = sum of s s^T. A fit bends
-// towards what weighs much in it and leaves too small residuals there; they are set right by the leverages: HC2 for
+// towards what weighs much in it and leaves too small residuals there; they are set right by the leverages: HC3 for
 // samples [MacKinnon and White 1985], CR2 for clusters [Bell and McCaffrey 2002]. In large problems, where no sample
 // weighs much, the factors N / (N - p) and G / (G - 1) stand for them (HC1, CR1).
 struct Uncertainty {

@@ -75,7 +75,9 @@ EntryCalibration CalibrateEntry(const Entry& entry, std::size_t e, const std::ve
     standard_errors.Add(sigma);
     independent.Add(error, sigma, INFINITY);
     const double cluster_sigma = trial.standard_error_clustered[e];
-    if (std::fabs(error) > 6 * (judge_clustered ? cluster_sigma : sigma)) ++result.lost;
+    // Without noise the standard errors are rounding, too.
+    const double rounding = 1e-9 * std::max(1.0, std::fabs(trial.truth[e]));
+    if (std::fabs(error) > 6 * (judge_clustered ? cluster_sigma : sigma) + rounding) ++result.lost;
     if (cluster_sigma > 0 && trial.incidences >= 2)
       clustered.Add(error, cluster_sigma, static_cast<double>(trial.incidences) - 1);
   }

@@ -67,7 +67,7 @@ TEST_F(CompareVerb, LobesCanBeFittedToAMaterial) {
   ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --no-report --name mine").exit_code, 0);
   const ProgramResult result = Shell("lobefit fit mine.material.json --recipe sel --theta-i 20:40");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, testing::HasSubstr("3 incident directions, 2 squared ellipsoidal lobes"));
+  EXPECT_THAT(result.out, testing::HasSubstr("24 incident directions, 2 squared ellipsoidal lobes"));
   EXPECT_THAT(Files(), testing::Contains("mine.sel.material.json"));
   const ProgramResult without = Shell("lobefit fit mine.material.json");
   EXPECT_EQ(without.exit_code, 2);

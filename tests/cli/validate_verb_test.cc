@@ -12,9 +12,9 @@ constexpr const char* kFew =
     "lobefit validate $SOURCE/samples/brushed_metal.toml --theta-i 10,30,50,65 --phi-i 0,60,120 --detector-step 20 ";
 
 TEST_F(ValidateVerb, PrintsTheCalibrationOfEveryParameter) {
-  const ProgramResult result = Shell(std::string(kFew) + "--noise 0.05 --trials 20");
+  const ProgramResult result = Shell(std::string(kFew) + "--noise 0.05 --trials 100");
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
-  for (const char* words : {"20 of 20 trials", "alpha_x", "theta_z_deg", "diffuse[B]", "95 % intervals", "PASSED"})
+  for (const char* words : {"100 of 100 trials", "alpha_x", "theta_z_deg", "diffuse[B]", "95 % intervals", "PASSED"})
     EXPECT_THAT(result.out, testing::HasSubstr(words));
   EXPECT_EQ(result.err, "");
 }

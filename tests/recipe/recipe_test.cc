@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"[[lobe]]\nndf = \"ggx\"\n[parameters]\nalpha_y = { start = 0.1 }\n",
                 "r.toml:4: 'alpha_y' is not a free parameter of this ndf; it can only be fixed"},
         BadCase{"theta_max_deg = 95\n[[lobe]]\n", "r.toml:1: theta_max_deg must lie in (0, 90]"},
-        BadCase{"name = \"x\"\n", "r.toml:1: a recipe needs at least one [[lobe]]"}));
+        BadCase{"name = \"x\"\n", "r.toml:1: a recipe needs at least one [[lobe]], or [sel]"}));
 
 TEST(AutomaticRecipe, TakesWhatTheMeasurementDetermines) {
   EXPECT_EQ(AutomaticRecipe({.isotropic = true}).model.lobes[0].ndf, Ndf::kGgx);
