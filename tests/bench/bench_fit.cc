@@ -294,7 +294,7 @@ int main(int argc, char** argv) {
   // The growth of memory first: what the others leave would hide it.
   lobefit::Growth(quick ? std::vector<std::size_t>{1000, 2000}
                         : std::vector<std::size_t>{10000, 100000, 1000000, 10000000});
-  lobefit::AgainstAutoDiff(quick ? 2000 : 900000);
+  lobefit::AgainstAutoDiff(quick ? 2000 : 300000);
   lobefit::SmallFits(quick ? 50 : 10000);
   lobefit::TwoLobes(quick ? 5000 : 900000);
   return 0;
