@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 #include "lobefit/export/import.h"
 #include "lobefit/fit/compare.h"
@@ -87,8 +88,8 @@ GivenMaterial LoadGiven(const std::string& path) {
   return given;
 }
 
-// The picture of the recommended model and the next best ones by held-out error; tables of lobes and foreign materials have
-// no place in its panels. Empty where no picture was drawn.
+// The picture of the recommended model and the next best ones by held-out error; tables of lobes and foreign materials
+// have no place in its panels. Empty where no picture was drawn.
 std::string DrawPicture(const Comparison& comparison, const Measurement& measurement, const std::filesystem::path& path,
                         int threads) {
   std::vector<std::size_t> order;
@@ -115,12 +116,8 @@ std::string DrawPicture(const Comparison& comparison, const Measurement& measure
 }
 
 int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
-  std::error_code error;
   const std::filesystem::path folder = verb.out;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw OutputError(
-        fmt::format("{}: cannot be made: {}; choose another folder with --out", verb.out, error.message()));
+  MakeFolder(folder);
 
   const auto start = std::chrono::steady_clock::now();
   std::vector<GivenMaterial> given;

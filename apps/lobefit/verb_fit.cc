@@ -62,12 +62,8 @@ Measurement Sampled(const FitVerb& verb) {
 }
 
 int RunFit(const FitVerb& verb, const CommonOptions& common) {
-  std::error_code error;
   const std::filesystem::path folder = verb.out;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw OutputError(
-        fmt::format("{}: cannot be made: {}; choose another folder with --out", verb.out, error.message()));
+  MakeFolder(folder);
 
   auto start = std::chrono::steady_clock::now();
   const bool of_model = LooksLikeMaterial(verb.file);

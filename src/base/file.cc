@@ -69,6 +69,13 @@ std::string Sha256Hex(std::string_view bytes) {
   return hex;
 }
 
+void MakeFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw OutputError(folder.string() + ": cannot be made: " + error.message() + "; choose another folder with --out");
+}
+
 void WriteFileThroughTemporary(const std::filesystem::path& path,
                                const std::function<void(const std::filesystem::path&)>& write) {
   const std::filesystem::path temporary = path.string() + ".part" + std::to_string(getpid());

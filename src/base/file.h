@@ -32,6 +32,9 @@ class MappedFile {
 // SHA-256 as 64 lower-case hexadecimal digits.
 std::string Sha256Hex(std::string_view bytes);
 
+// Makes a folder for results, with those above it; no more than that where it is there. Throws OutputError.
+void MakeFolder(const std::filesystem::path& folder);
+
 // Writes `path` by way of a temporary name in the same folder, which is renamed when `write` has returned and the data
 // are on disk; the temporary file is removed if anything throws. Throws OutputError.
 void WriteFileAtomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);

@@ -119,12 +119,7 @@ ExportResult ExportTo(const Target& target, const FittedBrdf& fit, const ErrorMe
 std::vector<ExportResult> ExportMaterial(const Material& material, const ExportOptions& options) {
   const FittedBrdf fit(material);
   CheckRefusals(fit, options);
-  std::error_code error;
-  std::filesystem::create_directories(options.folder, error);
-  if (error) {
-    throw OutputError(fmt::format("{}: the folder cannot be made ({}); choose another with --out",
-                                  options.folder.string(), error.message()));
-  }
+  MakeFolder(options.folder);
   const ErrorMeter meter(fit);
   std::vector<ExportResult> results;
   Progress progress("exporting", options.targets.size());

@@ -237,9 +237,10 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
       &pool);
   material.cost = best.cost;
   for (const DistinctMinimum& minimum : minima) material.minima.push_back(Describe(layout, minimum));
-  // Values that are noise about zero fit any lobe of no height.
+  // Values that are noise about zero, or zero, fit any lobe of no height.
   constexpr double kLeastExplained = 0.1;
-  const double explained = 1 - best.cost / CostOfBlack(problem, kernel, &pool);
+  const double black = CostOfBlack(problem, kernel, &pool);
+  const double explained = black > 0 ? 1 - best.cost / black : 0.0;
   if (explained < kLeastExplained) {
     material.degenerate.push_back(fmt::format(
         "everything: the model explains {:.1f} % of the measurement's squares, no more than noise about zero "

@@ -314,44 +314,47 @@ void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gra
   }
 }
 
-void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
-            std::vector<std::vector<double>>* scores) {
-  const std::size_t shape = model.shape_columns(), residual_column = model.columns() - 1,
-                    linear = residual_column - shape;
-  scores->assign(shape + linear * model.channels, std::vector<double>(end - begin, 0.0));
+namespace {
+
+// Calls each(place, count, channel, columns) for the columns of every block and channel of samples [begin, end);
+// `place` counts from `begin`, columns are kBlock apart.
+template <class Each>
+void ForColumns(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+                const Each& each) {
   Block block(samples, model, true);
   double unused = 0;
   for (std::size_t i = begin; i < end; i += kBlock) {
     const std::size_t count = std::min(kBlock, end - i);
     block.Evaluate(i, count);
     block.Residuals(i, &unused);
-    for (std::size_t c = 0; c < model.channels; ++c) {
-      const std::vector<double>& columns = block.Columns(c);
-      const double* residual = columns.data() + residual_column * kBlock;
-      for (std::size_t j = 0; j < residual_column; ++j) {
-        std::vector<double>& to = (*scores)[j < shape ? j : j + c * linear];
-        for (std::size_t k = 0; k < count; ++k) to[i - begin + k] += columns[j * kBlock + k] * residual[k];
-      }
-    }
+    for (std::size_t c = 0; c < model.channels; ++c) each(i - begin, count, c, block.Columns(c).data());
   }
+}
+
+}  // namespace
+
+void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+            std::vector<std::vector<double>>* scores) {
+  const std::size_t shape = model.shape_columns(), residual_column = model.columns() - 1,
+                    linear = residual_column - shape;
+  scores->assign(shape + linear * model.channels, std::vector<double>(end - begin, 0.0));
+  ForColumns(samples, model, begin, end, [&](std::size_t place, std::size_t count, std::size_t c, const double* from) {
+    const double* residual = from + residual_column * kBlock;
+    for (std::size_t j = 0; j < residual_column; ++j) {
+      std::vector<double>& to = (*scores)[j < shape ? j : j + c * linear];
+      for (std::size_t k = 0; k < count; ++k) to[place + k] += from[j * kBlock + k] * residual[k];
+    }
+  });
 }
 
 void Columns(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
              std::vector<std::vector<double>>* columns) {
   const std::size_t all = end - begin;
   columns->assign(model.channels, std::vector<double>(model.columns() * all));
-  Block block(samples, model, true);
-  double unused = 0;
-  for (std::size_t i = begin; i < end; i += kBlock) {
-    const std::size_t count = std::min(kBlock, end - i);
-    block.Evaluate(i, count);
-    block.Residuals(i, &unused);
-    for (std::size_t c = 0; c < model.channels; ++c) {
-      const double* from = block.Columns(c).data();
-      for (std::size_t j = 0; j < model.columns(); ++j)
-        std::copy_n(from + j * kBlock, count, (*columns)[c].data() + j * all + (i - begin));
-    }
-  }
+  ForColumns(samples, model, begin, end, [&](std::size_t place, std::size_t count, std::size_t c, const double* from) {
+    for (std::size_t j = 0; j < model.columns(); ++j)
+      std::copy_n(from + j * kBlock, count, (*columns)[c].data() + j * all + place);
+  });
 }
 
 void ModelValues(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,

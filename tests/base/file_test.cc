@@ -27,6 +27,22 @@ TEST(Sha256Hex, AgreesWithThePublishedVector) {
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");  // FIPS 180-4, example 1
 }
 
+TEST(MakeFolder, MakesThoseAboveAndSaysWhatStandsInTheWay) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "made";
+  MakeFolder(folder / "a" / "b");
+  MakeFolder(folder / "a" / "b");
+  EXPECT_TRUE(std::filesystem::is_directory(folder / "a" / "b"));
+  WriteFileAtomically(folder / "file", std::string_view("x"));
+  try {
+    MakeFolder(folder / "file" / "c");
+    FAIL() << "made";
+  } catch (const OutputError& error) {
+    EXPECT_NE(std::string(error.what()).find("cannot be made: "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("--out"), std::string::npos);
+  }
+  std::filesystem::remove_all(folder);
+}
+
 TEST(WriteFileAtomically, LeavesTheOldFileWhenWritingFails) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "atomic";
   std::filesystem::create_directories(folder);

@@ -61,7 +61,7 @@ TEST_F(ExportVerb, BadUse) {
       {"broken.json --to gltf", 3, "broken.json"},
       {"brushed_metal.material.json --to gltf --copy --refit", 2, "excludes"},
       {"brushed_metal.material.json --to gltf --name a/b", 2, "is a path; the folder is given by --out"},
-      {"brushed_metal.material.json --to gltf --out broken.json/x", 3, "the folder cannot be made"},
+      {"brushed_metal.material.json --to gltf --out broken.json/x", 3, "cannot be made"},
   };
   ASSERT_EQ(Shell("echo '{\"model\": 3' > broken.json").exit_code, 0);
   for (const auto& bad : cases) {

@@ -140,16 +140,18 @@ TEST(Fit, SaysWhatTheDataDoNotDetermine) {
   EXPECT_FALSE(material.degenerate.empty());
 }
 
-TEST(Fit, SaysThatNoiseAboutZeroIsNotAMaterial) {
-  Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0, 1);
-  double sign = 1e-4;
-  for (std::vector<double>& values : measurement.samples.values) {
-    for (double& value : values) value = sign *= -1;
+TEST(Fit, SaysThatNoiseAboutZeroAndZeroAreNotAMaterial) {
+  for (const double size : {1e-4, 0.0}) {
+    Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0, 1);
+    double sign = size;
+    for (std::vector<double>& values : measurement.samples.values) {
+      for (double& value : values) value = sign *= -1;
+    }
+    const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+    EXPECT_FALSE(material.termination.determined) << size;
+    ASSERT_FALSE(material.degenerate.empty()) << size;
+    EXPECT_NE(material.degenerate.back().find("noise about zero"), std::string::npos) << material.degenerate.back();
   }
-  const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
-  EXPECT_FALSE(material.termination.determined);
-  ASSERT_FALSE(material.degenerate.empty());
-  EXPECT_NE(material.degenerate.back().find("noise about zero"), std::string::npos) << material.degenerate.back();
 }
 
 TEST(Fit, SetsAsideAndCounts) {
