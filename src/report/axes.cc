@@ -32,6 +32,31 @@ std::string PowerLabel(int exponent) {
   return "10^{" + std::string(exponent < 0 ? "−" : "") + std::to_string(std::abs(exponent)) + "}";
 }
 
+// Labels that keep clear of each other along a line, which is true at their index: powers of ten first, then those of 2
+// and 5, then the others.
+std::vector<bool> Legible(const Canvas& canvas, const std::vector<Tick>& ticks, const std::vector<double>& places,
+                          bool logarithmic) {
+  constexpr double kClear = 7;
+  const auto rank = [logarithmic](double value) {
+    if (!logarithmic) return 0;
+    const long digit = std::lround(value / std::pow(10, std::floor(std::log10(value) + 1e-9)));
+    return digit == 1 ? 0 : digit == 2 || digit == 5 ? 1 : 2;
+  };
+  std::vector<bool> legible(ticks.size(), false);
+  std::vector<std::pair<double, double>> taken;
+  for (int now = 0; now <= 2; ++now) {
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      if (ticks[i].label.empty() || rank(ticks[i].value) != now) continue;
+      const double half = canvas.TextWidth(ticks[i].label, style::Tick(Align::kCenter)) / 2 + kClear / 2;
+      const double low = places[i] - half, high = places[i] + half;
+      legible[i] = std::none_of(taken.begin(), taken.end(),
+                                [&](const auto& other) { return low < other.second && other.first < high; });
+      if (legible[i]) taken.emplace_back(low, high);
+    }
+  }
+  return legible;
+}
+
 double Fraction(const Range& range, double v) {
   if (range.logarithmic) return std::log(v / range.low) / std::log(range.high / range.low);
   return (v - range.low) / (range.high - range.low);
@@ -70,7 +95,8 @@ std::vector<Tick> LogTicks(double low, double high, int target) {
   for (int e = first; e <= last; ++e) {
     const double power = std::pow(10, e);
     // Strides count from zero, so that 1 keeps its label.
-    if (inside(power)) ticks.push_back({power, e % stride == 0 ? PowerLabel(e) : ""});
+    const bool plain = decades < 2 && std::abs(e) <= 3;  // beside labels such as 0.2
+    if (inside(power)) ticks.push_back({power, plain ? TickLabel(power, power) : e % stride == 0 ? PowerLabel(e) : ""});
     for (int digit = 2; stride == 1 && digit < 10 && e < last; ++digit) {
       if (!inside(digit * power)) continue;
       const bool labelled = decades < 1 || (decades < 2 && (digit == 2 || digit == 5));
@@ -114,10 +140,14 @@ void Axes::DrawFrame(Canvas* canvas, const std::vector<Tick>& x_ticks, const std
                      bool y_labels) const {
   const Stroke line = {style::kSecondary, 0.5};
   canvas->Frame(frame_, line);
-  for (const Tick& tick : x_ticks) {
-    const double x = MapX(tick.value), length = tick.label.empty() ? 2.5 : 4;
+  std::vector<double> places;
+  for (const Tick& tick : x_ticks) places.push_back(MapX(tick.value));
+  const std::vector<bool> legible = Legible(*canvas, x_ticks, places, x_.logarithmic);
+  for (std::size_t i = 0; i < x_ticks.size(); ++i) {
+    const Tick& tick = x_ticks[i];
+    const double x = places[i], length = tick.label.empty() ? 2.5 : 4;
     canvas->Line({x, frame_.bottom()}, {x, frame_.bottom() - length}, line);
-    if (!x_labels || tick.label.empty()) continue;
+    if (!x_labels || !legible[i]) continue;
     TextStyle text = style::Tick(Align::kCenter);
     text.baseline = Baseline::kTop;
     canvas->Text({x, frame_.bottom() + 5}, tick.label, text);
@@ -147,17 +177,15 @@ void DrawColorScale(Canvas* canvas, const Box& box, Rgb (*color)(double), const 
     const double x = box.x + box.width * i / steps;
     canvas->Fill({x, box.y, box.width / steps, box.height}, color((i + 0.5) / steps));
   }
-  double labelled = -1e9;  // where the last label ends
-  for (const Tick& tick : ticks) {
-    if (tick.label.empty()) continue;
-    const double x = box.x + box.width * Fraction(range, tick.value);
-    canvas->Line({x, box.bottom()}, {x, box.bottom() + 3}, {style::kFaint, 1});
+  std::vector<double> places;
+  for (const Tick& tick : ticks) places.push_back(box.x + box.width * Fraction(range, tick.value));
+  const std::vector<bool> legible = Legible(*canvas, ticks, places, range.logarithmic);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    if (ticks[i].label.empty()) continue;
+    canvas->Line({places[i], box.bottom()}, {places[i], box.bottom() + 3}, {style::kFaint, 1});
     TextStyle text = style::Tick(Align::kCenter);
     text.baseline = Baseline::kTop;
-    const double half = canvas->TextWidth(tick.label, text) / 2;
-    if (x - half < labelled + 3) continue;
-    labelled = x + half;
-    canvas->Text({x, box.bottom() + 5}, tick.label, text);
+    if (legible[i]) canvas->Text({places[i], box.bottom() + 5}, ticks[i].label, text);
   }
   if (!label.empty())
     canvas->Text({box.center().x, box.y - 5}, label,

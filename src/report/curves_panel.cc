@@ -244,6 +244,7 @@ std::optional<Panel> CurvesPanel(const ReportData& data) {
   Panel panel;
   panel.id = "curves";
   panel.title = "In-plane curves";
+  panel.grows = true;
   const Rgb neutral = data.channels() == 1 ? data.channel_colors[0] : style::kSecondary;
   if (data.channels() > 1) {
     for (const std::size_t c : data.shown_channels)

@@ -11,6 +11,7 @@ namespace lobefit {
 struct PanelSize {
   bool wide = true;
   std::function<double(double width)> height;  // of the whole panel
+  bool grows = false;                          // draws more where it is given more height
 };
 
 struct PageLayout {
@@ -18,10 +19,10 @@ struct PageLayout {
   double height = 0;       // bottom of the lowest panel
 };
 
-// Wide panels stand in order in a column of two thirds, narrow ones in a column of one third beside it. A wide panel
-// that begins below the last narrow one takes the whole width. Narrow panels for which the column would grow past the
-// wide ones stand side by side at the bottom; how many is chosen so that the page is shortest. `gap` separates rows and
-// columns.
+// The page is cut into bands: wide panels in a column of two thirds with narrow ones in a column of one third beside
+// them, or one wide panel over the whole width, or up to three narrow ones side by side. Wide panels keep their order,
+// and so do narrow ones. Of all such pages the one is taken that is shortest, where blank area counts half as much as
+// length. `gap` separates rows and columns.
 PageLayout ArrangePanels(const std::vector<PanelSize>& panels, double left, double top, double width, double gap);
 
 }  // namespace lobefit

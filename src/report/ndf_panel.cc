@@ -51,23 +51,26 @@ Point OnEllipse(const SlopeFrame& frame, double rho, double t) {
   return {frame.slope_x + frame.a * c, frame.slope_y + frame.b * c + frame.c * s};
 }
 
-// Empty cells take the mean of the filled ones around them, twice over, so that a grid of directions leaves no holes.
+// Empty cells take the mean of the nearest filled ones up to three away, so that a grid of directions leaves no holes
+// and a plane of them is an even stripe.
 void FillGaps(std::vector<float>* density) {
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::vector<float> before = *density;
-    for (int row = 0; row < kCells; ++row) {
-      for (int column = 0; column < kCells; ++column) {
-        if (!std::isnan(before[PixelIndex(column, row, kCells)])) continue;
-        float sum = 0;
-        int count = 0;
-        for (int y = std::max(0, row - 1); y <= std::min(kCells - 1, row + 1); ++y) {
-          for (int x = std::max(0, column - 1); x <= std::min(kCells - 1, column + 1); ++x) {
-            const float d = before[PixelIndex(x, y, kCells)];
-            if (!std::isnan(d)) sum += d, ++count;
-          }
+  constexpr int kReach = 3, kReach2 = 12;  // and its square, of a round disc of cells
+  const std::vector<float> before = *density;
+  for (int row = 0; row < kCells; ++row) {
+    for (int column = 0; column < kCells; ++column) {
+      if (!std::isnan(before[PixelIndex(column, row, kCells)])) continue;
+      float sum = 0;
+      int count = 0, nearest = kReach2;
+      for (int y = std::max(0, row - kReach); y <= std::min(kCells - 1, row + kReach); ++y) {
+        for (int x = std::max(0, column - kReach); x <= std::min(kCells - 1, column + kReach); ++x) {
+          const float d = before[PixelIndex(x, y, kCells)];
+          const int away = (x - column) * (x - column) + (y - row) * (y - row);
+          if (std::isnan(d) || away > nearest) continue;
+          if (away < nearest) sum = 0, count = 0, nearest = away;
+          sum += d, ++count;
         }
-        if (count >= 2) (*density)[PixelIndex(column, row, kCells)] = sum / static_cast<float>(count);
       }
+      if (count > 0) (*density)[PixelIndex(column, row, kCells)] = sum / static_cast<float>(count);
     }
   }
 }

@@ -158,7 +158,8 @@ Canvas DrawPage(const ReportData& data, const std::vector<Panel>& panels, double
   Canvas ruler(1, 1, scale, fonts);
   std::vector<PanelSize> sizes;
   for (const Panel& panel : panels) {
-    sizes.push_back({panel.wide, [&panel, &ruler](double w) { return kPanelHead + panel.height(&ruler, w); }});
+    sizes.push_back(
+        {panel.wide, [&panel, &ruler](double w) { return kPanelHead + panel.height(&ruler, w); }, panel.grows});
   }
   const PageLayout layout = ArrangePanels(sizes, kMargin, kHeader + kMargin / 2, width, kGap);
   const double foot = layout.height + kGap;

@@ -25,6 +25,7 @@ struct Panel {
   std::string title;
   std::vector<LegendEntry> legend;  // right of the title
   bool wide = true;                 // two thirds of the page; else one third
+  bool grows = false;               // draws more where it is given more height
   // Height of the content for a width, page units; the layout may give more.
   std::function<double(Canvas*, double width)> height;
   std::function<void(Canvas*, const Box& content)> draw;

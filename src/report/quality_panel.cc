@@ -76,6 +76,7 @@ class Writer {
   }
 
   void Lines(const std::string& text) {
+    y_ += 6;
     for (const std::string& line : canvas_->Wrap(text, style::Note(), box_.width)) {
       y_ += 16;
       if (draw_) canvas_->Text({box_.x, y_}, line, style::Note());

@@ -31,13 +31,20 @@ std::vector<Panel> MakePanels(const ReportData& data) {
 void WriteReport(const Material& material, const Measurement& measurement, const ReportPaths& paths,
                  const ReportOptions& options) {
   const ReportData data(material, measurement, options.threads);
-  const auto fonts = std::make_shared<Fonts>(options.font_folders);
   const std::vector<Panel> panels = MakePanels(data);
-  if (!paths.png.empty()) {
-    const Canvas canvas = DrawPage(data, panels, options.scale, fonts);
-    WritePng(canvas.pixels(), 96 * options.scale, paths.png);
-  }
-  if (!paths.html.empty()) WriteFileAtomically(paths.html, ReportHtml(data, panels, fonts));
+  // Picture and page at the same time, each with fonts of its own, which are no shared state.
+  std::string png, html;
+  const std::size_t first = paths.png.empty() ? 1 : 0, last = paths.html.empty() ? 1 : 2;
+  ParallelFor(last > first ? last - first : 0, options.threads, [&](std::size_t task) {
+    const auto fonts = std::make_shared<Fonts>(options.font_folders);
+    if (first + task == 0) {
+      png = EncodePng(DrawPage(data, panels, options.scale, fonts).pixels(), 96 * options.scale);
+    } else {
+      html = ReportHtml(data, panels, fonts);
+    }
+  });
+  if (!paths.png.empty()) WriteFileAtomically(paths.png, png);
+  if (!paths.html.empty()) WriteFileAtomically(paths.html, html);
   if (paths.exr.empty()) return;
   std::vector<NamedField> fields;
   for (const Panel& panel : panels) fields.insert(fields.end(), panel.fields.begin(), panel.fields.end());

@@ -111,7 +111,9 @@ double Quantile(std::vector<double>* values, double q) {
 
 ResidualBand::ResidualBand(const ReportData& data, std::size_t channel) {
   constexpr std::array<double, 19> kEdges = {0, 1, 2, 3, 4, 6, 8, 10, 13, 16, 20, 25, 30, 36, 43, 50, 60, 70, 90};
-  constexpr std::size_t kEnough = 24;      // samples of a bin; fewer join the next one
+  // Samples of a bin; fewer join the next one. The outer quantiles of two dozen samples of heavy-tailed residuals jump
+  // from bin to bin by more than they say.
+  const std::size_t enough = std::clamp<std::size_t>(data.measurement.samples.size() / 8, 24, 200);
   constexpr std::size_t kTaken = 1 << 18;  // samples taken in all, evenly over the file
   const Samples& samples = data.measurement.samples;
   std::vector<std::vector<double>> ratios(kEdges.size() - 1);
@@ -127,12 +129,20 @@ ResidualBand::ResidualBand(const ReportData& data, std::size_t channel) {
     ratios[static_cast<std::size_t>(bin)].push_back(ratio);
     sums[static_cast<std::size_t>(bin)] += theta_h;
   }
+  // Values of zero or less have no logarithm: they count as the lowest residual that has one.
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& bin : ratios) {
+    for (const double r : bin) lowest = std::isfinite(r) ? std::min(lowest, r) : lowest;
+  }
+  for (std::vector<double>& bin : ratios) {
+    for (double& r : bin) r = std::isfinite(r) || !std::isfinite(lowest) ? r : lowest;
+  }
   std::vector<double> gathered;
   double sum = 0;
   for (std::size_t bin = 0; bin < ratios.size(); ++bin) {
     gathered.insert(gathered.end(), ratios[bin].begin(), ratios[bin].end());
     sum += sums[bin];
-    if (gathered.size() < kEnough) continue;
+    if (gathered.size() < enough) continue;
     centers_.push_back(DegreesToRadians(sum / static_cast<double>(gathered.size())));
     quantiles_.push_back({Quantile(&gathered, 0.05), Quantile(&gathered, 0.5), Quantile(&gathered, 0.95)});
     gathered.clear();

@@ -50,7 +50,10 @@ void Fill(const ReportData& data, Residuals* residuals) {
     const double f = static_cast<double>(data.fitted_values[k % data.channels()][k / data.channels()]);
     if (f > 0) values.push_back(f);
   }
-  const double low = Quantile(&values, 0.01), high = Quantile(&values, 0.999);
+  // A few values far from all others would leave most of the diagram empty.
+  const double above =
+      std::clamp(2.0 * kFewest / static_cast<double>(std::max<std::size_t>(1, values.size())), 0.001, 0.05);
+  const double low = Quantile(&values, 0.01), high = Quantile(&values, 1 - above);
   residuals->diagrams[0] = {"θ_h  (degrees)", {1, 90, true}, {}};
   residuals->diagrams[1] = {"θ_i  (degrees)", {0, 90, false}, {}};
   residuals->diagrams[2] = {"fitted f_r  (1/sr)", {low, std::max(high, 2 * low), true}, {}};
@@ -143,6 +146,7 @@ std::optional<Panel> ResidualsPanel(const ReportData& data) {
   Panel panel;
   panel.id = "residuals";
   panel.title = "Residuals";
+  panel.grows = true;
   const std::string shown = residuals->taken < residuals->all ? Count(residuals->taken) + " of " + Count(residuals->all)
                                                               : "all " + Count(residuals->all);
   panel.legend = {{LegendEntry::Mark::kBand, style::kBlue, "density (" + shown + " values)"},
@@ -150,7 +154,7 @@ std::optional<Panel> ResidualsPanel(const ReportData& data) {
                   {LegendEntry::Mark::kLine, style::kInk, "quartiles; dashed 5 and 95 %"}};
   panel.height = [](Canvas*, double) { return 290.0; };
   panel.draw = [residuals](Canvas* canvas, const Box& content) {
-    const double gap = 18, left = 62, height = std::min(content.height - 50, 420.0),
+    const double gap = 34, left = 62, height = std::min(content.height - 50, 420.0),
                  width = (content.width - left - 2 * gap - 4) / 3;
     for (std::size_t k = 0; k < 3; ++k) {
       const Box frame = {content.x + left + static_cast<double>(k) * (width + gap), content.y + 4, width, height};

@@ -29,9 +29,9 @@ LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int 
 // The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
 std::optional<LitSphere> LightMeasured(const ReportData& data, const ChannelColor& to_color, int size);
 
-// Under an analytic sky with a low sun, 104 pixels wide. Light comes from `count` directions: half drawn from
-// the density of slopes of `lobe`, half by the cosine, weighted by the balance heuristic; the same ones for any brdf,
-// so that two spheres can be compared.
+// Under an analytic sky with a low sun, 104 pixels wide. Light comes from `count` directions: a third
+// drawn from the density of slopes of `lobe`, a third by the cosine, a third around the sun, weighted by the balance
+// heuristic; the same ones for any brdf, so that two spheres can be compared.
 LitSphere SkySphere(const BrdfFunction& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color,
                     std::size_t channels, int count, int threads);
 
