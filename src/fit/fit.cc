@@ -219,8 +219,8 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   material.degenerate = uncertainty.degenerate;
   Report(layout, best.u, uncertainty, &material);
   material.remarks = measurement->remarks;
-  const Misfit misfit = TestMisfit(problem, layout, best.u, samples, incidences);
-  if (misfit.flagged) material.remarks.push_back(ToRemark(misfit));
+  material.misfit = TestMisfit(problem, layout, best.u, samples, incidences);
+  if (material.misfit->flagged) material.remarks.push_back(ToRemark(*material.misfit));
   material.samples_read = read;
   material.samples_used = samples.size();
   for (int r = 0; r < kSetAsideReasons; ++r) {

@@ -216,9 +216,9 @@ Misfit TestMisfit(const Problem& problem, const Layout& layout, const std::vecto
 
 std::string ToRemark(const Misfit& misfit) {
   return fmt::format(
-      "{}the residuals are structured: their mean over {} is {:.2f} of their spread, which noise explains with "
+      "misfit: the residuals are structured: their mean over {} is {:.2f} of their spread, which noise explains with "
       "probability {:.1g}; the model is not quite the one behind the data, and its intervals are too narrow",
-      kMisfitRemark, misfit.where, misfit.size, misfit.probability);
+      misfit.where, misfit.size, misfit.probability);
 }
 
 }  // namespace lobefit

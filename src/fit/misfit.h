@@ -7,18 +7,11 @@
 
 #include "lobefit/fit/layout.h"
 #include "lobefit/fit/problem.h"
+#include "lobefit/material/material.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/measurement/measurement.h"
 
 namespace lobefit {
-
-struct Misfit {
-  bool tested = false;
-  bool flagged = false;
-  double probability = 1;  // of a bin so far from zero if the model were right
-  double size = 0;         // mean residual of that bin over the root mean square of all residuals
-  std::string where;       // that bin, in words
-};
 
 // Samples are sorted into bins: by the distance of their half vector from the first lobe's centre in its slope space
 // (in widths of the lobe), by its azimuth there, by theta_d, by theta_i. Under the right model the mean residual of a
@@ -30,8 +23,7 @@ struct Misfit {
 Misfit TestMisfit(const Problem& problem, const Layout& layout, const std::vector<double>& u, const Samples& samples,
                   const Incidences& incidences);
 
-// The remark that a document carries where the flag is raised; it begins with kMisfitRemark.
-inline constexpr const char* kMisfitRemark = "misfit: ";
+// The remark that people read where the flag is raised.
 std::string ToRemark(const Misfit& misfit);
 
 }  // namespace lobefit

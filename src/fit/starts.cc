@@ -16,7 +16,7 @@ namespace {
 // A factor of 1.6 to 2 between neighbours: from any lobe the nearest is well within the basin of its minimum.
 constexpr double kAlphas[] = {0.005, 0.01, 0.02, 0.04, 0.08, 0.15, 0.25, 0.4, 0.65};
 constexpr double kMirror = 5e-4;  // narrower than the cells of any table
-constexpr double kAspect = 4;  // alpha_x / alpha_y of the anisotropic candidates
+constexpr double kAspect = 4;     // alpha_x / alpha_y of the anisotropic candidates
 
 // Where the density of normals peaks: mean half vector of the samples with the highest f_r cos_theta_i cos_theta_o
 // (about D F G).

@@ -80,12 +80,21 @@ Json CovarianceToJson(const Material& material) {
 Json QualityToJson(const Material& material) {
   Json errors = Json::object();
   for (const MetricError& error : material.errors) errors[error.metric] = Number(error.rms);
-  return {{"samples_read", material.samples_read},
-          {"samples_used", material.samples_used},
-          {"set_aside", material.set_aside},
-          {"cost", Number(material.cost)},
-          {"errors", errors},
-          {"remarks", material.remarks}};
+  Json quality = {{"samples_read", material.samples_read},
+                  {"samples_used", material.samples_used},
+                  {"set_aside", material.set_aside},
+                  {"cost", Number(material.cost)},
+                  {"errors", errors},
+                  {"remarks", material.remarks}};
+  if (material.misfit) {
+    const Misfit& misfit = *material.misfit;
+    quality["misfit"] = {{"tested", misfit.tested},
+                         {"flagged", misfit.flagged},
+                         {"probability", Number(misfit.probability)},
+                         {"size", Number(misfit.size)},
+                         {"where", misfit.where}};
+  }
+  return quality;
 }
 
 Json MinimaToJson(const Material& material) {
@@ -279,6 +288,12 @@ void ReadRest(const Reader& reader, Material* material) {
   material->set_aside = reader.Get<std::map<std::string, std::size_t>>(quality, "set_aside");
   material->cost = reader.Get<double>(quality, "cost");
   material->remarks = reader.Get<std::vector<std::string>>(quality, "remarks");
+  if (quality.contains("misfit")) {
+    const Json& misfit = reader.Member(quality, "misfit");
+    material->misfit = {reader.Get<bool>(misfit, "tested"), reader.Get<bool>(misfit, "flagged"),
+                        reader.Get<double>(misfit, "probability"), reader.Get<double>(misfit, "size"),
+                        reader.Get<std::string>(misfit, "where")};
+  }
   for (const auto& [metric, rms] : reader.Member(quality, "errors").items()) {
     material->errors.push_back(
         {metric, rms.is_number() ? rms.get<double>() : std::numeric_limits<double>::quiet_NaN()});

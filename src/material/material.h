@@ -46,6 +46,16 @@ struct Termination {
   int iterations = 0;
 };
 
+// Whether the residuals are structured: what the noise does not explain says that the model is not the one behind the
+// data, whatever the standard errors say. See fit/misfit.h for the test.
+struct Misfit {
+  bool tested = false;
+  bool flagged = false;
+  double probability = 1;  // of a bin of residuals so far from zero if the model were right
+  double size = 0;         // mean residual of that bin over the root mean square of all residuals
+  std::string where;       // that bin, in words
+};
+
 struct Source {
   std::string file, sha256, format;
   std::map<std::string, std::string> conventions;
@@ -69,6 +79,7 @@ struct Material {
   // Directions in parameter space that the data do not determine, in words.
   std::vector<std::string> degenerate;
   std::vector<std::string> remarks;
+  std::optional<Misfit> misfit;  // of fits of a model
 
   std::size_t samples_used = 0, samples_read = 0;
   std::map<std::string, std::size_t> set_aside;

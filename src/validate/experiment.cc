@@ -7,7 +7,6 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/layout.h"
-#include "lobefit/fit/misfit.h"
 #include "lobefit/fit/problem.h"
 #include "lobefit/measurement/incidence.h"
 
@@ -99,7 +98,7 @@ Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measure
     trial.degenerate = material.degenerate;
     trial.cost = material.cost;
     trial.minima = material.minima.size();
-    for (const std::string& remark : material.remarks) trial.misfit = trial.misfit || remark.starts_with(kMisfitRemark);
+    trial.misfit = material.misfit && material.misfit->flagged;
     trial.samples = measurement.samples.size();
     trial.incidences = GroupByIncidence(measurement).wi.size();
     trial.cost_at_truth = same ? CostAt(truth, experiment.recipe, measurement) : kNan;

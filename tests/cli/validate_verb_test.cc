@@ -65,6 +65,43 @@ TEST_F(ValidateVerb, WhatIsNotAllowedIsSaid) {
   EXPECT_THAT(error("--noise holes=2"), testing::HasSubstr("[0, 0.99]"));
 }
 
+TEST_F(ValidateVerb, ASweepPrintsATableAParameterAndDrawsIt) {
+  const ProgramResult result =
+      Shell(std::string(kFew) + "--noise 0.05 --trials 6 --sweep alpha=0.2,0.4 --picture sweep.png");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  // A line each for the two values under the summary and under each of 11 entries.
+  for (const char* value : {"0.2", "0.4"}) {
+    std::size_t lines = 0;
+    for (std::size_t at = result.out.find("\n" + std::string(value) + " "); at != std::string::npos;
+         at = result.out.find("\n" + std::string(value) + " ", at + 1))
+      ++lines;
+    EXPECT_EQ(lines, 12U) << result.out;
+  }
+  EXPECT_THAT(Files(), testing::Contains("sweep.png"));
+  EXPECT_EQ(Shell("head -c 4 sweep.png | tail -c 3").out, "PNG");
+
+  const ProgramResult json = Shell(std::string(kFew) + "--noise 0.05 --trials 3 --sweep metric=log,relative --json");
+  const std::size_t line = json.out.find('\n');
+  EXPECT_EQ(nlohmann::json::parse(json.out.substr(0, line))["value"], "log");
+  EXPECT_EQ(nlohmann::json::parse(json.out.substr(line))["value"], "relative");
+
+  const ProgramResult unknown = Shell(std::string(kFew) + "--sweep alpa=1");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, testing::HasSubstr("did you mean 'alpha'?"));
+}
+
+TEST_F(ValidateVerb, ARunIsDrawn) {
+  const ProgramResult result = Shell(std::string(kFew) + "--noise 0.05 --trials 20 --picture run.png");
+  EXPECT_EQ(Shell("head -c 4 run.png | tail -c 3").out, "PNG") << result.err;
+}
+
+TEST_F(ValidateVerb, TheSelfCheckPassesLineByLine) {
+  const ProgramResult result = Shell("lobefit validate --self-check");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_THAT(result.out, testing::EndsWith("PASSED\n"));
+  EXPECT_THAT(result.out, testing::Not(testing::HasSubstr("FAIL")));
+}
+
 TEST_F(ValidateVerb, AnInterruptedRunReportsTheTrialsThatItHas) {
   const ProgramResult result = Shell(
       "lobefit validate $SOURCE/samples/brushed_metal.toml --phi-i 0,60,120 --noise 0.05 --trials 100000 --json & "
