@@ -16,6 +16,7 @@
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 #include "lobefit/fit/sel_fit.h"
+#include "lobefit/fit/sel_sampling.h"
 #include "lobefit/material/json.h"
 #include "lobefit/report/report.h"
 

@@ -21,9 +21,4 @@ Material FitSel(const Recipe& recipe, const FitOptions& options, Measurement* me
 // FitSel for a recipe with [sel], else Fit.
 Material FitRecipe(const Recipe& recipe, const FitOptions& options, Measurement* measurement);
 
-// What a model gives on hemispheres of viewers at theta_i = 0, 10, ... 80 degrees (for models that are not isotropic at
-// azimuths every 45 degrees): rings about the mirror direction, as dense as the narrowest lobe needs, and a grid of 10
-// degrees. The measurement to which FitSel fits a table of a model.
-Measurement SampleForSel(const Material& material);
-
 }  // namespace lobefit

@@ -1,35 +1,14 @@
 // Squared ellipsoidal lobes fitted to the samples of one incident direction (sel_table.h).
-//
-// Coordinates of the descent, none with a bound: per lobe t with alpha_x = 1 / (1 + exp(-t)), s with alpha_y = alpha_x
-// exp(-s^2), the two offsets, psi; then ln amplitude and ln constant a channel. So alpha_y <= alpha_x always, the kink
-// of the lobe at equal alphas (sel.h) is reached at s = 0 and never crossed, and amplitudes stay positive.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
 #include "lobefit/core/sel_table.h"
+#include "lobefit/fit/sel_samples.h"
 #include "lobefit/recipe/recipe.h"
 
 namespace lobefit {
-
-// Samples of one incident direction, in the mirror frame of their own wi.
-struct SelSamples {
-  std::vector<Vec3> v;
-  std::vector<double> cos_i, cos_o;
-  std::vector<double> weight;            // of the squared residual
-  std::vector<std::vector<double>> f_r;  // [channel][sample]
-
-  std::size_t size() const { return v.size(); }
-  std::size_t channels() const { return f_r.size(); }
-  // g of a sample: f_r, or f_r cos_theta_o.
-  double Value(SelQuantity quantity, std::size_t channel, std::size_t i) const {
-    return quantity == SelQuantity::kBrdf ? f_r[channel][i] : f_r[channel][i] * cos_o[i];
-  }
-  SelSamples Subset(const std::vector<std::size_t>& indices) const;
-  // One channel, the mean of all.
-  SelSamples Mean() const;
-};
 
 // A neighbouring slice that the shapes are drawn to: `weight` times the squared differences of the mean logarithm of
 // the widths, of the anisotropy as a vector of angle 2 psi, and of the offsets, is added to the sum of squares.

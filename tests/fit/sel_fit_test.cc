@@ -12,6 +12,7 @@
 #include "lobefit/fit/compare.h"
 #include "lobefit/fit/prediction.h"
 #include "lobefit/fit/sel_envelope.h"
+#include "lobefit/fit/sel_sampling.h"
 #include "lobefit/fit/sel_slice.h"
 #include "lobefit/material/json.h"
 #include "lobefit/math/directions.h"
