@@ -63,7 +63,7 @@ int RunExport(const ExportVerb& verb, const CommonOptions& common) {
   options.command = common.command;
   options.numbers = verb.refit ? Numbers::kRefitted : verb.copy ? Numbers::kCopied : Numbers::kBetter;
   options.threads = common.Threads();
-  const Material material = ReadModelMaterial(verb.material);
+  const Material material = ReadMaterial(verb.material);
   const std::vector<ExportResult> results = ExportMaterial(material, options);
   fmt::print("{}", common.json ? ExportJson(material, options, results) : ExportSummary(results));
   return kExitDone;

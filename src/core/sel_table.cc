@@ -89,13 +89,15 @@ SelReflectance::SelReflectance(const SelTable& table) : table_(table) {
   std::stable_sort(order.begin(), order.end(), less);
   for (const std::size_t s : order) {
     const double theta = table_.slices[s].theta_i;
-    if (rings_.empty() || theta - rings_.back().theta > kSameAngle || table_.isotropic) rings_.push_back({theta, {}});
+    if (rings_.empty() || theta - rings_.back().theta > kSameAngle || table_.isotropic)
+      rings_.push_back({theta, {}, false});
     rings_.back().slices.push_back(s);
   }
   for (Ring& ring : rings_) {
     std::stable_sort(ring.slices.begin(), ring.slices.end(), [&](std::size_t a, std::size_t b) {
       return Wrapped(table_.slices[a].phi_i) < Wrapped(table_.slices[b].phi_i);
     });
+    ring.fixed = !table_.isotropic && ring.slices.size() == 1 && ring.theta < kSameAngle;
   }
 }
 
@@ -103,9 +105,7 @@ void SelReflectance::AddShares(const Ring& ring, double phi, double weight, std:
   const auto azimuth = [&](std::size_t k) { return Wrapped(table_.slices[ring.slices[k]].phi_i); };
   const std::size_t count = ring.slices.size();
   if (count == 1) {
-    // Along the normal all azimuths are one direction, and its lobes do not turn with the plane of incidence.
-    const bool fixed = !table_.isotropic && ring.theta < kSameAngle;
-    shares->push_back({ring.slices[0], weight, fixed ? table_.slices[ring.slices[0]].phi_i - phi : 0.0});
+    shares->push_back({ring.slices[0], weight, ring.fixed ? table_.slices[ring.slices[0]].phi_i - phi : 0.0});
     return;
   }
   phi = Wrapped(phi);

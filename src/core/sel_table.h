@@ -69,10 +69,20 @@ Mat3 MirrorFrame(const Vec3& wi);
 // nearest one holds, and in a ring with a single azimuth the lobes turn with the plane of incidence.
 class SelReflectance {
  public:
+  // Slices of one polar angle, by growing azimuth. Along the normal all azimuths are one direction: lobes that are
+  // `fixed` do not turn with the plane of incidence.
+  struct Ring {
+    double theta;
+    std::vector<std::size_t> slices;
+    bool fixed;
+  };
+
   // Domain: at least one slice; all with the same numbers of lobes and channels.
   explicit SelReflectance(const SelTable& table);
 
   std::size_t channels() const { return table_.slices[0].constant.size(); }
+  const SelTable& table() const { return table_; }
+  const std::vector<Ring>& rings() const { return rings_; }  // by growing polar angle
   // The lobes for an incident direction.
   SelSlice At(const Vec3& wi) const;
   // f_r[c], 1/sr, for unit directions; 0 where one of them is at or below the horizon.
@@ -81,11 +91,6 @@ class SelReflectance {
   void Evaluate(const Vec3& wi, const std::vector<Vec3>& wo, std::vector<std::vector<double>>* f_r) const;
 
  private:
-  // Slices of one polar angle, by growing azimuth.
-  struct Ring {
-    double theta;
-    std::vector<std::size_t> slices;
-  };
   struct Share {
     std::size_t slice;
     double weight, turn;  // azimuth by which the slice's frame must be turned into that of wi

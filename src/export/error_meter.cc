@@ -22,7 +22,11 @@ Vec3 NormalAt(const SlopeCoordinates& shape, double level, double psi) {
 
 }  // namespace
 
-ErrorMeter::ErrorMeter(const FittedBrdf& fit) {
+ErrorMeter::ErrorMeter(const FittedBrdf& fit)
+    : ErrorMeter(fit.function(), fit.channels(), fit.reflectance().lobe_shapes(), fit.material().source.file) {}
+
+ErrorMeter::ErrorMeter(const BrdfFunction& brdf, const Channels& channels, const std::vector<SlopeCoordinates>& shapes,
+                       const std::string& source) {
   GoniometerLayout layout;
   for (const double degrees : {5, 20, 35, 50, 65, 75}) layout.polar_angles.push_back(DegreesToRadians(degrees));
   for (int k = 0; k < 8; ++k) layout.azimuths.push_back(DegreesToRadians(45 * k));
@@ -32,7 +36,7 @@ ErrorMeter::ErrorMeter(const FittedBrdf& fit) {
   for (const double theta : layout.polar_angles) {
     for (const double phi : layout.azimuths) {
       const Vec3 wi = FromSpherical(theta, phi);
-      for (const SlopeCoordinates& shape : fit.reflectance().lobe_shapes()) {
+      for (const SlopeCoordinates& shape : shapes) {
         for (int k = 0; k < 40; ++k) {
           const Vec3 wo = Reflect(wi, NormalAt(shape, 0.1 + 0.2 * (k % 5), 2 * kPi * (k / 5) / 8 + 0.3));
           if (wo.z < std::cos(layout.theta_max)) continue;
@@ -42,17 +46,16 @@ ErrorMeter::ErrorMeter(const FittedBrdf& fit) {
       }
     }
   }
-  measurement_ = Synthesise(directions, fit.channels(), fit.function(), {}, 0);
-  measurement_.source = fit.material().source.file;
-  MakeAlbedoRules(fit);
-  for (const AlbedoRule& rule : rules_) fitted_albedo_.push_back(Albedo(rule, fit.function()));
+  measurement_ = Synthesise(directions, channels, brdf, {}, 0);
+  measurement_.source = source;
+  MakeAlbedoRules(shapes);
+  for (const AlbedoRule& rule : rules_) fitted_albedo_.push_back(Albedo(rule, brdf));
 }
 
 // Directions by the slopes of each lobe and by the cosine, weighted by the balance heuristic: the same nodes serve
 // narrow and wide lobes, and what they miss, they miss of both functions.
-void ErrorMeter::MakeAlbedoRules(const FittedBrdf& fit) {
+void ErrorMeter::MakeAlbedoRules(const std::vector<SlopeCoordinates>& shapes) {
   constexpr int kSide = 24;
-  const std::vector<SlopeCoordinates>& shapes = fit.reflectance().lobe_shapes();
   for (const double theta : {0.0, 30.0, 60.0, 75.0}) {
     for (const double phi : {20.0, 110.0, 200.0, 290.0}) {
       AlbedoRule rule;

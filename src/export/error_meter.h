@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "lobefit/export/fitted_brdf.h"
@@ -29,6 +30,9 @@ class ErrorMeter {
   // more of them about the mirror direction and, for each lobe, at five levels of its cumulative distribution.
   // Albedos, over all lights as renderers sample them: viewers at 0, 30, 60 and 75 degrees, four azimuths.
   explicit ErrorMeter(const FittedBrdf& fit);
+  // The same of any function, with lobes of slopes `shapes`; `source` is its measurement's file.
+  ErrorMeter(const BrdfFunction& brdf, const Channels& channels, const std::vector<SlopeCoordinates>& shapes,
+             const std::string& source);
 
   // `brdf` has the channels of the fit. Safe to call with a function that throws nothing.
   ExportError Compare(const BrdfFunction& brdf) const;
@@ -44,7 +48,7 @@ class ErrorMeter {
     std::vector<double> weight;
   };
   std::vector<double> Albedo(const AlbedoRule& rule, const BrdfFunction& brdf) const;
-  void MakeAlbedoRules(const FittedBrdf& fit);
+  void MakeAlbedoRules(const std::vector<SlopeCoordinates>& shapes);
 
   Measurement measurement_;
   std::vector<AlbedoRule> rules_;

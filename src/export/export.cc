@@ -1,7 +1,7 @@
 #include "lobefit/export/export.h"
 
 #include <chrono>
-#include <system_error>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -11,22 +11,32 @@
 #include "lobefit/base/text.h"
 #include "lobefit/base/version.h"
 #include "lobefit/export/refit.h"
+#include "lobefit/export/sel_export.h"
 
 namespace lobefit {
 namespace {
 
-void CheckRefusals(const FittedBrdf& fit, const ExportOptions& options) {
+using Clock = std::chrono::steady_clock;
+
+// Why a target cannot hold the material, by `reason_of`; throws with all reasons and the targets that can.
+void CheckRefusals(const ExportOptions& options, const std::function<std::string(const Target&)>& reason_of) {
   std::vector<std::string> reasons;
   for (const Target* target : options.targets) {
-    const std::string reason = target->refusal(fit);
+    const std::string reason = reason_of(*target);
     if (!reason.empty()) reasons.push_back(fmt::format("{} cannot hold this material: {}", target->name, reason));
   }
   if (reasons.empty()) return;
   std::vector<std::string> can;
   for (const Target& target : ExportTargets()) {
-    if (target.refusal(fit).empty()) can.emplace_back(target.name);
+    if (reason_of(target).empty()) can.emplace_back(target.name);
   }
   throw InputError(fmt::format("{}: {}; targets that can: {}", options.material_file, Join(reasons, "; "), Join(can)));
+}
+
+std::string RefusalOfSel(const Target& target) {
+  if (target.write_sel != nullptr) return "";
+  return "it takes a model of the surface, and this is a table of squared ellipsoidal lobes for each incident "
+         "direction";
 }
 
 std::string ErrorWords(const ExportError& error) {
@@ -54,8 +64,7 @@ std::string CarriedLines(const std::vector<Carried>& rows) {
   return text;
 }
 
-std::vector<std::string> Header(const FittedBrdf& fit, const ExportOptions& options, const ExportResult& result) {
-  const Material& material = fit.material();
+std::vector<std::string> Header(const Material& material, const ExportOptions& options, const ExportResult& result) {
   std::string fit_error;
   for (const MetricError& error : material.errors) fit_error += fmt::format("  {} {:.3g}", error.metric, error.rms);
   std::vector<std::string> lines = {
@@ -78,9 +87,22 @@ std::vector<std::string> Header(const FittedBrdf& fit, const ExportOptions& opti
   return lines;
 }
 
+WriteContext ContextOf(const Material& material, const ExportOptions& options, const ExportResult& result) {
+  return {options.folder, options.name, Header(material, options, result), options.threads};
+}
+
+// What counts is the file: it is read back where it can be.
+void Complete(const WrittenFiles& written, const ErrorMeter& meter, Clock::time_point start, ExportResult* result) {
+  result->error = meter.Compare(written.brdf);
+  result->files = written.files;
+  result->notes = written.notes;
+  for (const std::filesystem::path& file : result->files) result->bytes += std::filesystem::file_size(file);
+  result->seconds = std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 ExportResult ExportTo(const Target& target, const FittedBrdf& fit, const ErrorMeter& meter,
                       const ExportOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   ExportResult result;
   result.target = &target;
   result.carries = target.carries(fit);
@@ -101,32 +123,54 @@ ExportResult ExportTo(const Target& target, const FittedBrdf& fit, const ErrorMe
       }
     }
   }
-  const FittedBrdf& source = refitted ? *refitted : fit;
-  const WriteContext context = {options.folder, options.name, Header(fit, options, result), options.threads};
-  const WrittenFiles written = target.write(source, context);
+  const WrittenFiles written = target.write(refitted ? *refitted : fit, ContextOf(fit.material(), options, result));
   if (target.evaluate == nullptr) result.numbers = written.exact ? "exact" : "tabulated";
-  // What counts is the file: it is read back.
-  result.error = meter.Compare(written.brdf);
-  result.files = written.files;
-  result.notes = written.notes;
-  for (const std::filesystem::path& file : result.files) result.bytes += std::filesystem::file_size(file);
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Complete(written, meter, start, &result);
   return result;
+}
+
+ExportResult ExportSelTo(const Target& target, const Material& material, const ErrorMeter& meter,
+                         const ExportOptions& options) {
+  const auto start = Clock::now();
+  ExportResult result;
+  result.target = &target;
+  result.carries = CarriesSel(material);
+  result.numbers = "exact";
+  Complete(target.write_sel(material, ContextOf(material, options, result)), meter, start, &result);
+  return result;
+}
+
+std::vector<ExportResult> ExportToAll(const ExportOptions& options,
+                                      const std::function<ExportResult(const Target&)>& export_to) {
+  std::vector<ExportResult> results;
+  Progress progress("exporting", options.targets.size());
+  for (const Target* target : options.targets) {
+    results.push_back(export_to(*target));
+    progress.Advance();
+  }
+  return results;
+}
+
+std::vector<ExportResult> ExportSel(const Material& material, const ExportOptions& options) {
+  CheckRefusals(options, RefusalOfSel);
+  MakeFolder(options.folder);
+  const ErrorMeter meter = SelErrorMeter(material);
+  return ExportToAll(options, [&](const Target& target) { return ExportSelTo(target, material, meter, options); });
+}
+
+std::vector<ExportResult> ExportModel(const Material& material, const ExportOptions& options) {
+  const FittedBrdf fit(material);
+  CheckRefusals(options, [&](const Target& target) { return target.refusal(fit); });
+  MakeFolder(options.folder);
+  const ErrorMeter meter(fit);
+  return ExportToAll(options, [&](const Target& target) { return ExportTo(target, fit, meter, options); });
 }
 
 }  // namespace
 
 std::vector<ExportResult> ExportMaterial(const Material& material, const ExportOptions& options) {
-  const FittedBrdf fit(material);
-  CheckRefusals(fit, options);
-  MakeFolder(options.folder);
-  const ErrorMeter meter(fit);
-  std::vector<ExportResult> results;
-  Progress progress("exporting", options.targets.size());
-  for (const Target* target : options.targets) {
-    results.push_back(ExportTo(*target, fit, meter, options));
-    progress.Advance();
-  }
+  const std::vector<ExportResult> results =
+      material.sel ? ExportSel(material, options) : ExportModel(material, options);
   WriteFileAtomically(options.folder / (options.name + ".export.json"), ExportJson(material, options, results));
   return results;
 }

@@ -10,6 +10,11 @@
 
 namespace lobefit {
 
+bool IsRgbOrGrey(const Channels& channels) {
+  return channels.names == std::vector<std::string>{"R", "G", "B"} ||
+         (channels.size() == 1 && channels.wavelengths_nm.empty());
+}
+
 FittedBrdf::FittedBrdf(Material material)
     : material_(std::move(material)),
       reflectance_(
@@ -68,11 +73,6 @@ bool FittedBrdf::HasOnlyGgx() const {
 
 bool FittedBrdf::HasDiffuse() const {
   return std::any_of(diffuse_.begin(), diffuse_.end(), [](double albedo) { return albedo != 0; });
-}
-
-bool FittedBrdf::IsRgbOrGrey() const {
-  return material_.channels == std::vector<std::string>{"R", "G", "B"} ||
-         (material_.channels.size() == 1 && material_.wavelengths_nm.empty());
 }
 
 }  // namespace lobefit

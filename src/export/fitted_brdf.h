@@ -15,6 +15,9 @@
 
 namespace lobefit {
 
+// R, G, B, or one channel that is no wavelength: what renderers' text formats hold.
+bool IsRgbOrGrey(const Channels& channels);
+
 // A specular lobe: widths along its own axes, and where those axes lie.
 struct FittedLobe {
   Lobe choices;
@@ -47,8 +50,7 @@ class FittedBrdf {
   bool IsIsotropic() const { return !IsTilted() && !IsAnisotropic(); }
   bool HasOnlyGgx() const;
   bool HasDiffuse() const;
-  // Channels R, G, B, or one channel that is no wavelength: what renderers' text formats hold.
-  bool IsRgbOrGrey() const;
+  bool IsRgbOrGrey() const { return lobefit::IsRgbOrGrey(channels()); }
 
  private:
   Material material_;

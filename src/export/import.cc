@@ -14,6 +14,7 @@
 #include "lobefit/export/materialx.h"
 #include "lobefit/export/mitsuba.h"
 #include "lobefit/export/pbrt.h"
+#include "lobefit/export/sel_export.h"
 #include "lobefit/export/surface.h"
 #include "lobefit/export/text.h"
 #include "lobefit/io/merl_table.h"
@@ -58,7 +59,8 @@ ImportedMaterial ImportMerl(std::string_view bytes) {
 }
 
 ImportedMaterial ImportDocument(const std::filesystem::path& path) {
-  const Material material = ReadModelMaterial(path);
+  const Material material = ReadMaterial(path);
+  if (material.sel) return {"json", {material.channels, material.wavelengths_nm}, SelBrdf(*material.sel), {}};
   const auto reflectance =
       std::make_shared<const Reflectance>(material.model, material.Values(), material.channels.size());
   return {"json",

@@ -46,15 +46,8 @@ float lobefit_ellipsoid(vec3 wi, vec3 wo, vec3 h, float ax, float ay, float tx_d
 }
 )";
 
-// A literal of type float.
-std::string Float(double value) {
-  std::string text = fmt::format("{:.9g}", value);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";
-  return text;
-}
-
 std::string Vector(const std::vector<double>& values) {
-  const auto at = [&](std::size_t c) { return Float(values[values.size() == 1 ? 0 : c]); };
+  const auto at = [&](std::size_t c) { return FloatLiteral(values[values.size() == 1 ? 0 : c]); };
   return fmt::format("vec3({}, {}, {})", at(0), at(1), at(2));
 }
 
@@ -63,9 +56,9 @@ int MaskingNumber(const FittedLobe& lobe) { return static_cast<int>(lobe.choices
 
 std::string LobeCall(const FittedBrdf& fit, std::size_t lobe) {
   const SlopeCoordinates& s = fit.reflectance().lobe_shapes()[lobe];
-  return fmt::format("lobefit_lobe(wi, wo, h, {}, {}, {}, {}, {}, {}, {})", Float(s.v[0]), Float(s.v[1]),
-                     Float(std::exp(s.v[2])), Float(s.v[3]), Float(std::exp(s.v[4])), FamilyNumber(fit.lobes()[lobe]),
-                     MaskingNumber(fit.lobes()[lobe]));
+  return fmt::format("lobefit_lobe(wi, wo, h, {}, {}, {}, {}, {}, {}, {})", FloatLiteral(s.v[0]), FloatLiteral(s.v[1]),
+                     FloatLiteral(std::exp(s.v[2])), FloatLiteral(s.v[3]), FloatLiteral(std::exp(s.v[4])),
+                     FamilyNumber(fit.lobes()[lobe]), MaskingNumber(fit.lobes()[lobe]));
 }
 
 // The Fresnel factor as an expression of `cos_d`, with the parameters as text.
@@ -89,7 +82,7 @@ std::string FresnelOf(const FittedBrdf& fit, std::size_t lobe, std::size_t chann
   std::vector<std::string> parameters;
   for (std::size_t k = 0; k < FresnelParameters(fresnel); ++k) {
     const std::size_t index = FirstParameter(material.model, lobe) + kShapeParameters + k;
-    parameters.push_back(Float(material.parameters[index].values[channel]));
+    parameters.push_back(FloatLiteral(material.parameters[index].values[channel]));
   }
   return FresnelText(fresnel, parameters);
 }
@@ -113,7 +106,7 @@ std::string SpectrumBody(const FittedBrdf& fit) {
     text += fmt::format("  float lobe{} = {};\n", l + 1, LobeCall(fit, l));
   }
   for (std::size_t c = 0; c < fit.material().channels.size(); ++c) {
-    text += fmt::format("  f_r[{}] = {}", c, Float(fit.diffuse()[c] * kInvPi));
+    text += fmt::format("  f_r[{}] = {}", c, FloatLiteral(fit.diffuse()[c] * kInvPi));
     for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
       text += fmt::format(" + lobe{} * {}", l + 1, FresnelOf(fit, l, c));
     }
@@ -188,11 +181,11 @@ std::string BrdfExplorerText(const FittedBrdf& fit, const std::vector<std::strin
     const double factor = 1 / InsideFactor(parameter);
     const std::string name = Identifier(parameter.json_name);
     if (parameter.per_channel) {
-      const auto at = [&](std::size_t c) { return Float(values[values.size() == 1 ? 0 : c]); };
+      const auto at = [&](std::size_t c) { return FloatLiteral(values[values.size() == 1 ? 0 : c]); };
       text += fmt::format("color {} {} {} {}\n", name, at(0), at(1), at(2));
     } else {
-      text += fmt::format("float {} {} {} {}\n", name, Float(parameter.low * factor), Float(parameter.high * factor),
-                          Float(values[0] * factor));
+      text += fmt::format("float {} {} {} {}\n", name, FloatLiteral(parameter.low * factor),
+                          FloatLiteral(parameter.high * factor), FloatLiteral(values[0] * factor));
     }
   }
   text += fmt::format("::end parameters\n\n::begin shader\n{}{}\n", kLobeText, kSlopeText);

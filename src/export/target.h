@@ -50,6 +50,8 @@ struct Target {
   // The target's own model with the numbers of `fit` translated: f_r in the fit's channels. Null where `write` has it.
   BrdfFunction (*evaluate)(const FittedBrdf& fit);
   WrittenFiles (*write)(const FittedBrdf& fit, const WriteContext& context);
+  // A table of squared ellipsoidal lobes in place of a model; null: the target cannot hold one.
+  WrittenFiles (*write_sel)(const Material& material, const WriteContext& context) = nullptr;
 };
 
 const std::vector<Target>& ExportTargets();

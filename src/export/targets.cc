@@ -10,6 +10,7 @@
 #include "lobefit/export/materialx.h"
 #include "lobefit/export/mitsuba.h"
 #include "lobefit/export/pbrt.h"
+#include "lobefit/export/sel_export.h"
 #include "lobefit/export/shader_targets.h"
 #include "lobefit/export/surface.h"
 #include "lobefit/export/table_targets.h"
@@ -161,9 +162,9 @@ std::string RefuseNoLobe(const FittedBrdf& fit) {
 const std::vector<Target>& ExportTargets() {
   static const std::vector<Target> targets = {
       {"json", "the material document itself", "lobefit report NAME.material.json MEASUREMENT", RefuseNothing,
-       CarriesModel, nullptr, nullptr, WriteJsonTarget},
+       CarriesModel, nullptr, nullptr, WriteJsonTarget, WriteSelJson},
       {"glsl", "GLSL function of the exact model", "f_r = lobefit_f_r(wi, wo), directions in the tangent frame",
-       RefuseUnknownTerms, CarriesModel, nullptr, nullptr, WriteGlsl},
+       RefuseUnknownTerms, CarriesModel, nullptr, nullptr, WriteGlsl, WriteSelGlsl},
       {"osl", "OSL function and shader of the exact model", "oslc NAME.osl; f_r = lobefit_f_r(wi, wo)",
        RefuseUnknownTerms, CarriesModel, nullptr, nullptr, WriteOsl},
       {"brdf-explorer", "Disney BRDF Explorer, parameters as sliders", "brdf NAME.brdf", RefuseSpectraAndUnknownTerms,

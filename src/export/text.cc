@@ -15,6 +15,12 @@ constexpr std::string_view kRotationKey = "uv-rotation-deg:";
 
 std::string Number9(double value) { return fmt::format("{:.9g}", value); }
 
+std::string FloatLiteral(double value) {
+  std::string text = Number9(value);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
 std::string Numbers9(const Color3& values, std::string_view separator) {
   return fmt::format("{:.9g}{}{:.9g}{}{:.9g}", values[0], separator, values[1], separator, values[2]);
 }

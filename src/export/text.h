@@ -12,6 +12,8 @@ namespace lobefit {
 
 // Nine significant digits: what single precision holds.
 std::string Number9(double value);
+// The same as a literal of type float in shader text.
+std::string FloatLiteral(double value);
 // Three of them with blanks between.
 std::string Numbers9(const Color3& values, std::string_view separator = " ");
 

@@ -1,10 +1,10 @@
 // The shader texts: compiled by glslangValidator, and evaluated in a browser's WebGL 2 against the fit. Skipped where
 // the tool is not installed.
-#include <cstdio>
-#include <cstdlib>
+#include <array>
 #include <filesystem>
 #include <random>
 
+#include "tests/export/browser.h"
 #include "tests/export/materials.h"
 #include "tests/support/shapes.h"
 #include <fmt/format.h>
@@ -19,18 +19,6 @@ namespace lobefit {
 namespace {
 
 using testing::HasSubstr;
-
-bool Installed(const char* program) {
-  return std::system(fmt::format("command -v {} >/dev/null 2>&1", program).c_str()) == 0;
-}
-
-std::string OutputOf(const std::string& command) {
-  std::string text;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text.push_back(static_cast<char>(c));
-  pclose(pipe);
-  return text;
-}
 
 struct Case {
   const char* name;
@@ -76,6 +64,9 @@ SyntheticCase GgxImplicit() {
   return synthetic;
 }
 
+// What a text is asked in each pixel.
+constexpr const char* kCall = "vec3 pixel(vec4 a, vec4 b) { return f_of(a.xyz, b.xyz); }\n";
+
 class Shaders : public testing::TestWithParam<Case> {
  protected:
   void SetUp() override {
@@ -87,10 +78,7 @@ class Shaders : public testing::TestWithParam<Case> {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::string Validate(const std::string& text) const {
-    WriteFileAtomically(folder_ / "shader.frag", text);
-    return OutputOf("glslangValidator '" + (folder_ / "shader.frag").string() + "' 2>&1");
-  }
+  std::string Validate(const std::string& text) const { return test::Validate(text, folder_); }
 
   std::string Main() const {
     const std::size_t channels = fit_->material().channels.size();
@@ -106,7 +94,7 @@ class Shaders : public testing::TestWithParam<Case> {
 };
 
 TEST_P(Shaders, CompileForGlAndForWebGl) {
-  if (!Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
+  if (!test::Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
   const std::string text = GlslText(*fit_, {"a comment"}) + Main();
   const std::string main = "in vec3 a; in vec3 b; out vec4 c;\nvoid main() { c = vec4(f_of(a, b), 1.0); }\n";
   for (const char* version : {"#version 300 es\nprecision highp float;\n", "#version 330\n", "#version 410\n"}) {
@@ -117,7 +105,7 @@ TEST_P(Shaders, CompileForGlAndForWebGl) {
 }
 
 TEST_P(Shaders, BrdfExplorerFileCompiles) {
-  if (!Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
+  if (!test::Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
   if (!fit_->IsRgbOrGrey()) return;
   const std::string file = BrdfExplorerText(*fit_, {"a comment"});
   // As the program reads it: lines that begin with # go first, the first word is "analytic".
@@ -149,7 +137,7 @@ TEST_P(Shaders, BrdfExplorerFileCompiles) {
 
 // 64 pairs of directions, for each text one pixel a pair in floating point.
 TEST_P(Shaders, GiveTheFitsValuesInABrowser) {
-  if (!Installed("chromium")) GTEST_SKIP() << "Chromium is not installed";
+  if (!test::Installed("chromium")) GTEST_SKIP() << "Chromium is not installed";
   constexpr int kPairs = 64;
   std::vector<Vec3> wi, wo;
   ShapeGenerator directions(11);
@@ -159,11 +147,8 @@ TEST_P(Shaders, GiveTheFitsValuesInABrowser) {
     wi.push_back(i);
     wo.push_back(o);
   }
-  std::string data;
-  for (int k = 0; k < kPairs; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    data += fmt::format("{},{},{},0,{},{},{},0,", wi[at].x, wi[at].y, wi[at].z, wo[at].x, wo[at].y, wo[at].z);
-  }
+  std::vector<std::array<test::Texel, 2>> pairs;
+  for (std::size_t k = 0; k < kPairs; ++k) pairs.push_back({test::Texel{wi[k], 0}, test::Texel{wo[k], 0}});
   std::string explorer_body, explorer_uniforms;
   if (fit_->IsRgbOrGrey()) {
     // The sliders at their defaults, as constants.
@@ -187,56 +172,20 @@ TEST_P(Shaders, GiveTheFitsValuesInABrowser) {
         "vec3 f_of(vec3 wi, vec3 wo) { return BRDF(wi, wo, vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, "
         "0.0)); }\n";
   }
-  const std::string head =
-      "#version 300 es\nprecision highp float;\nprecision highp sampler2D;\nuniform sampler2D pairs;\nout vec4 c;\n";
-  const std::string main =
-      "void main() { int k = int(gl_FragCoord.x); c = vec4(f_of(texelFetch(pairs, ivec2(2 * k, 0), 0).xyz, "
-      "texelFetch(pairs, ivec2(2 * k + 1, 0), 0).xyz), 1.0); }\n";
-  std::vector<std::string> texts = {head + GlslText(*fit_, {}) + Main() + main};
-  if (!explorer_body.empty()) texts.push_back(head + explorer_uniforms + explorer_body + main);
-  std::string page = "<pre id=\"result\"></pre>";
-  for (const std::string& text : texts) page += "<script type=\"text/plain\" class=\"shader\">" + text + "</script>";
-  page += "<script>const pairs = new Float32Array([" + data + "]);\n";
-  page += R"(const gl = document.createElement('canvas').getContext('webgl2');
-gl.getExtension('EXT_color_buffer_float');
-const texture = (w, data) => { const t = gl.createTexture(); gl.bindTexture(gl.TEXTURE_2D, t);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, w, 1, 0, gl.RGBA, gl.FLOAT, data);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST); gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST); return t; };
-const n = pairs.length / 8, target = texture(n, null);
-gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
-gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
-texture(2 * n, pairs); gl.viewport(0, 0, n, 1);
-let out = '';
-for (const element of document.querySelectorAll('.shader')) {
-  const p = gl.createProgram();
-  for (const [type, source] of [[gl.VERTEX_SHADER, '#version 300 es\nvoid main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }'], [gl.FRAGMENT_SHADER, element.textContent]]) {
-    const s = gl.createShader(type); gl.shaderSource(s, source); gl.compileShader(s); out += gl.getShaderInfoLog(s) || ''; gl.attachShader(p, s); }
-  gl.linkProgram(p); gl.useProgram(p); gl.drawArrays(gl.TRIANGLES, 0, 3);
-  const pixels = new Float32Array(4 * n); gl.readPixels(0, 0, n, 1, gl.RGBA, gl.FLOAT, pixels);
-  out += Array.from(pixels).join(' ') + '\n'; }
-document.getElementById('result').textContent = out;
-</script>)";
-  WriteFileAtomically(folder_ / "page.html", page);
-  const std::string dom = OutputOf(
-      "timeout 300 chromium --headless=new --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader "
-      "--disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync "
-      "--virtual-time-budget=10000 --user-data-dir='" +
-      (folder_ / "profile").string() + "' --dump-dom 'file://" + (folder_ / "page.html").string() + "' 2>/dev/null");
-  const std::size_t begin = dom.find("<pre id=\"result\">") + 17;
-  const std::string result = dom.substr(begin, dom.find("</pre>", begin) - begin);
-  LineReader rows(result);
-  std::string_view row;
+  std::vector<std::string> texts = {GlslText(*fit_, {}) + Main() + kCall};
+  if (!explorer_body.empty()) texts.push_back(explorer_uniforms + explorer_body + kCall);
+  const std::vector<std::vector<double>> rows = test::EvaluateInBrowser(texts, pairs, folder_);
+  ASSERT_EQ(rows.size(), texts.size());
   const std::size_t channels = fit_->material().channels.size();
   for (std::size_t text = 0; text < texts.size(); ++text) {
-    ASSERT_TRUE(rows.Next(&row)) << dom.substr(0, 2000);
-    const std::vector<std::string_view> values = SplitBlanks(row);
-    ASSERT_EQ(values.size(), 4U * kPairs) << row.substr(0, 300);
+    const std::vector<double>& values = rows[text];
+    ASSERT_EQ(values.size(), 4U * kPairs);
     for (std::size_t k = 0; k < kPairs; ++k) {
       std::vector<double> wanted(channels);
       fit_->function()(wi[k], wo[k], wanted.data());
       for (std::size_t c = 0; c < 3; ++c) {
         const double expected = wanted[channels == 1 ? 0 : c == 2 ? channels - 1 : c];
-        const double found = ParseDouble(values[4 * k + c]).value_or(-1);
+        const double found = values[4 * k + c];
         // Single precision: a direction has 6e-8, which a lobe of width alpha sees 1/alpha times as large.
         const double tolerance = 1e-4 + 1e-6 / fit_->lobes()[0].widths.alpha_2;
         EXPECT_NEAR(found / expected, 1, tolerance) << "text " << text << ", pair " << k << ", channel " << c;

@@ -73,6 +73,32 @@ TEST_F(ExportVerb, BadUse) {
       << "nothing is left behind";
 }
 
+// A table of lobes in place of a model: the document and shader text hold it, all others refuse it.
+TEST_F(ExportVerb, TablesOfLobes) {
+  ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe sel --no-report").exit_code, 0);
+  const ProgramResult run = Shell("lobefit export satin_plastic.material.json --to json,glsl --out here");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("exactly: lobes, interpolation, channels (the table itself)"));
+  const nlohmann::json record = nlohmann::json::parse(ReadWholeFile(folder_ / "here/satin_plastic.export.json"));
+  ASSERT_EQ(record["targets"].size(), 2U);
+  EXPECT_LT(record["targets"][0]["relative_error"]["maximum"], 1e-12) << "angles in degrees";
+  EXPECT_LT(record["targets"][1]["relative_error"]["maximum"], 1e-5);
+  EXPECT_GT(record["targets"][1]["relative_error"]["maximum"], 0) << "single precision";
+  const std::string glsl = ReadWholeFile(folder_ / "here/satin_plastic.glsl");
+  EXPECT_THAT(glsl, testing::StartsWith("// satin_plastic: exported by lobefit"));
+  EXPECT_THAT(glsl, HasSubstr("vec3 lobefit_f_r_bound(vec3 wi, vec3 axis, float half_angle)"));
+  for (const char* target :
+       {"osl", "brdf-explorer", "pbrt", "mitsuba", "materialx", "openpbr", "gltf", "rgl", "merl", "bsdf-xml", "csv"}) {
+    const ProgramResult refused =
+        Shell(std::string("lobefit export satin_plastic.material.json --out there --to ") + target);
+    EXPECT_EQ(refused.exit_code, 3) << target;
+    EXPECT_THAT(refused.err, HasSubstr(std::string(target) + " cannot hold this material")) << target;
+    EXPECT_THAT(refused.err, HasSubstr("table of squared ellipsoidal lobes")) << target;
+    EXPECT_THAT(refused.err, HasSubstr("targets that can: json, glsl")) << target;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "there"));
+}
+
 // The exported material beside recipes: its error on the measurement is near that of the fit it came from.
 TEST_F(ExportVerb, CompareTakesMaterialsOfRenderers) {
   ASSERT_EQ(Shell("lobefit export brushed_metal.material.json --to gltf,mitsuba").exit_code, 0);
