@@ -17,7 +17,9 @@
 #include "lobefit/base/text.h"
 #include "lobefit/export/import.h"
 #include "lobefit/fit/compare.h"
+#include "lobefit/fit/sel_slice.h"
 #include "lobefit/material/json.h"
+#include "lobefit/measurement/incidence.h"
 #include "lobefit/report/comparison.h"
 
 namespace lobefit {
@@ -32,12 +34,26 @@ struct CompareVerb {
   bool no_report = false;
 };
 
-// What is worth comparing on a measurement: from the simplest model to the richest that it can determine, and a second
-// lobe.
-std::vector<std::string> DefaultRecipes(const MeasurementTraits& traits) {
-  if (traits.isotropic) return {"ggx", "ggx-two-lobes"};
-  if (traits.in_plane) return {"ggx", "auto", "ggx-two-lobes"};
-  return {"ggx", "ggx-anisotropic", "ellipsoid", "ggx-two-lobes"};
+// Whether most incident directions have three values for each parameter of their lobes, and there are some to
+// interpolate between.
+bool CanFeedLobes(const Measurement& measurement, const SelRecipe& sel) {
+  const std::size_t channels = measurement.channels.size();
+  const Incidences incidences = GroupByIncidence(measurement);
+  std::vector<std::size_t> count(incidences.wi.size());
+  for (const auto group : incidences.group) ++count[group];
+  const std::size_t needed = 3 * SelFreeParameters(sel.lobes, channels);
+  const auto enough = std::count_if(count.begin(), count.end(), [&](std::size_t n) { return n * channels >= needed; });
+  return enough >= 3 && 2 * static_cast<std::size_t>(enough) > count.size();
+}
+
+// What is worth comparing on a measurement: from the simplest model to the richest that it can determine, a second
+// lobe, and lobes for each incident direction, whose error shows how much of the data no such model describes.
+std::vector<std::string> DefaultRecipes(const Measurement& measurement, const MeasurementTraits& traits) {
+  std::vector<std::string> names = {"ggx", "ggx-anisotropic", "ellipsoid", "ggx-two-lobes"};
+  if (traits.in_plane) names = {"ggx", "auto", "ggx-two-lobes"};
+  if (traits.isotropic) names = {"ggx", "ggx-two-lobes"};
+  if (CanFeedLobes(measurement, *LoadRecipe("sel").sel)) names.emplace_back("sel");
+  return names;
 }
 
 Recipe NamedRecipe(const std::string& name, const MeasurementTraits& traits) {
@@ -64,7 +80,7 @@ std::vector<Recipe> ChooseRecipes(const CompareVerb& verb, const Measurement& me
       throw UsageError(fmt::format("--recipes names '{}' twice", Excerpt(name)));
     names.push_back(name);
   }
-  if (names.empty()) names = DefaultRecipes(traits);
+  if (names.empty()) names = DefaultRecipes(measurement, traits);
   std::vector<Recipe> recipes;
   for (const std::string& name : names) {
     Recipe recipe = NamedRecipe(name, traits);
@@ -88,13 +104,13 @@ GivenMaterial LoadGiven(const std::string& path) {
   return given;
 }
 
-// The picture of the recommended model and the next best ones by held-out error; tables of lobes and foreign materials
-// have no place in its panels. Empty where no picture was drawn.
+// The picture of the recommended model and the next best ones by held-out error; foreign materials have no place in its
+// panels. Empty where no picture was drawn.
 std::string DrawPicture(const Comparison& comparison, const Measurement& measurement, const std::filesystem::path& path,
                         int threads) {
   std::vector<std::size_t> order;
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
-    if (!comparison.models[m].material.sel && !comparison.models[m].brdf) order.push_back(m);
+    if (!comparison.models[m].brdf) order.push_back(m);
   }
   const auto rank = [&](std::size_t m) {
     const double held_out = comparison.models[m].held_out;

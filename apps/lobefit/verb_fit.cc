@@ -94,7 +94,7 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   // The document first: it is kept even where drawing fails.
   WriteMaterial(material, document);
   std::string pictures;
-  if (!verb.no_report && !material.sel) {
+  if (!verb.no_report) {
     start = std::chrono::steady_clock::now();
     ReportOptions report;
     report.threads = options.threads;
@@ -108,8 +108,6 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
     fmt::print("{}{}", Summary(material), WorstSlicePlot(material, measurement, TerminalColumns()));
     fmt::print("Result:  {}\n", document.string());
     fmt::print("{}", pictures);
-    if (material.sel && !verb.no_report)
-      fmt::print("No report: its panels show models; `lobefit compare` sets the lobes beside one.\n");
   }
   return Judge(material);
 }

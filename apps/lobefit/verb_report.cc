@@ -22,7 +22,7 @@ struct ReportVerb {
 };
 
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
-  const Material material = ReadModelMaterial(verb.material);
+  const Material material = ReadMaterial(verb.material);
   Measurement measurement = verb.measurement.Load(verb.file);
   // The picture shows what was fitted.
   Selection limit;

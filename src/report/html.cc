@@ -52,7 +52,7 @@ std::string FigureHtml(const Figure& figure) {
 
 // What the script and the shader of the page evaluate; other models are shown in pictures only.
 bool IsLive(const Model& model) {
-  return model.diffuse != Diffuse::kMicrofacet &&
+  return !model.lobes.empty() && model.diffuse != Diffuse::kMicrofacet &&
          std::all_of(model.lobes.begin(), model.lobes.end(), [](const Lobe& l) {
            return FamilyOf(l.ndf) == NdfFamily::kGgx && l.masking <= Masking::kSmithHeight &&
                   (l.fresnel == Fresnel::kSchlick || l.fresnel == Fresnel::kNone);

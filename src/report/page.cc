@@ -130,7 +130,10 @@ double DrawFooter(Canvas* canvas, const ReportData& data, double y, bool draw) {
 }  // namespace
 
 std::string ModelWords(const Model& model) {
+  // A model without any part stands where a table of lobes was fitted.
   std::string words;
+  if (model.lobes.empty() && model.diffuse == Diffuse::kNone)
+    return "squared ellipsoidal lobes for each incident direction";
   for (const Lobe& lobe : model.lobes) {
     if (!words.empty()) words += "  +  ";
     words += Find(NdfChoices(), NameOf(NdfChoices(), lobe.ndf))->description;

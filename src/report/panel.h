@@ -36,6 +36,7 @@ using PanelMaker = std::optional<Panel> (*)(const ReportData& data);
 
 std::optional<Panel> CurvesPanel(const ReportData& data);
 std::optional<Panel> ParametersPanel(const ReportData& data);
+std::optional<Panel> LobesPanel(const ReportData& data);
 std::optional<Panel> MapsPanel(const ReportData& data);
 std::optional<Panel> QualityPanel(const ReportData& data);
 std::optional<Panel> BurleyPanel(const ReportData& data);

@@ -39,7 +39,7 @@ std::string WavelengthName(double nanometres) {
 ReportData::ReportData(const Material& fitted_material, const Measurement& measured, int thread_count)
     : material(Checked(fitted_material, measured)),
       measurement(measured),
-      fitted(fitted_material.model, fitted_material.Values(), measured.channels.size()),
+      fitted(fitted_material),
       staying(GroupByStayingDirection(measured)),
       threads(thread_count) {
   const Samples& samples = measurement.samples;

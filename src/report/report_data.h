@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/core/reflectance.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/report/canvas.h"
+#include "lobefit/report/fitted_function.h"
 #include "lobefit/report/slices.h"
 
 namespace lobefit {
@@ -20,7 +20,7 @@ struct ReportData {
 
   const Material& material;
   const Measurement& measurement;
-  Reflectance fitted;
+  FittedFunction fitted;
   Staying staying;
   int threads;
   // fitted_values[channel][sample], f_r in 1/sr.

@@ -31,9 +31,10 @@ std::vector<std::string> IdsOf(const Material& material, const Measurement& meas
   return ids;
 }
 
+// All but that of tables of lobes.
 TEST(Page, AFullTableFillsEveryPanel) {
   const Material material = test::MakeMaterial(3, true);
-  EXPECT_EQ(IdsOf(material, test::Measure(material, test::TablePairs(), 0.03, true)).size(), PanelMakers().size());
+  EXPECT_EQ(IdsOf(material, test::Measure(material, test::TablePairs(), 0.03, true)).size(), PanelMakers().size() - 1);
 }
 
 TEST(Page, AnInPlaneMeasurementHasNoMaps) {
