@@ -7,6 +7,7 @@
 
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/progress.h"
+#include "lobefit/base/text.h"
 #include "lobefit/fit/prediction.h"
 #include "lobefit/fit/problem.h"
 #include "lobefit/fit/sel_envelope.h"
@@ -20,17 +21,34 @@ namespace {
 
 constexpr int kSweeps = 2;
 
+// The first few, and that there are more.
+std::string Shortened(std::vector<std::string> words) {
+  constexpr std::size_t kMost = 5;
+  if (words.size() > kMost) {
+    words.resize(kMost);
+    words.emplace_back("...");
+  }
+  return Join(words);
+}
+
 void DescribeEnd(const std::vector<SelNode>& nodes, Termination* termination) {
   std::size_t unfinished = 0;
+  std::vector<std::string> angles;
   for (const SelNode& node : nodes) {
-    unfinished += node.fit.converged ? 0 : 1;
     termination->iterations += node.fit.iterations;
+    if (node.fit.converged) continue;
+    ++unfinished;
+    const SelSlice& slice = node.fit.slice;
+    angles.push_back(fmt::format("{:.1f}", RadiansToDegrees(slice.theta_i)));
+    if (slice.phi_i != 0) angles.back() += fmt::format("/{:.1f}", RadiansToDegrees(slice.phi_i));
   }
   termination->converged = unfinished == 0;
   termination->determined = true;
-  termination->message = unfinished == 0
-                             ? "every incident direction converged"
-                             : fmt::format("{} of {} incident directions did not converge", unfinished, nodes.size());
+  termination->message =
+      unfinished == 0
+          ? "every incident direction converged"
+          : fmt::format("{} of {} incident directions did not converge (theta_i {} degrees); take fewer lobes",
+                        unfinished, nodes.size(), Shortened(angles));
 }
 
 void DescribeSource(const Recipe& recipe, const Measurement& measurement, Material* material) {

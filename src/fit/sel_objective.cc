@@ -7,7 +7,11 @@ namespace lobefit {
 namespace {
 
 // Limits of the coordinates: alpha_x from 1e-3 to 0.999, aspect to 1:126, offsets to 57 degrees.
-constexpr double kMaxT = 6.9, kMaxS = 2.2, kMaxOffset = 1, kMinLog = -40, kMaxLog = 30;
+constexpr double kMaxT = 6.9, kMaxS = 2.2, kMaxOffset = 1, kMinLog = -40;
+// An amplitude is at most this times the brightest sample: the most that lets a sample two widths from the axis be the
+// brightest. Without the limit lobes narrower than the samples' spacing, and up to 1e8 times as bright, hid between
+// them: on six files of the RGL database the table's error under cosine-l2 was 2 to 1000 times larger.
+constexpr double kMostOverSamples = 4;
 constexpr Eigen::Index kShape = SelObjective::kShape;
 
 struct Transformed {
@@ -77,15 +81,18 @@ SelObjective::SelObjective(const SelSamples& samples, std::size_t lobes, const S
       channels_(static_cast<Eigen::Index>(samples.channels())),
       target_(samples.channels(), std::vector<double>(samples.size())) {
   for (std::size_t c = 0; c < samples.channels(); ++c) {
+    double brightest = 1e-12;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double m = samples.f_r[c][i];
+      brightest = std::max(brightest, samples.Value(options.quantity, c, i));
       target_[c][i] = Transform1(options.metric, m, samples.cos_i[i], m).value;
     }
+    most_.push_back(std::log(kMostOverSamples * brightest));
   }
 }
 
 double SelObjective::High(Eigen::Index k) const {
-  if (k >= kShape * lobes_) return kMaxLog;
+  if (k >= kShape * lobes_) return most_[static_cast<std::size_t>((k - kShape * lobes_) % channels_)];
   constexpr double kHigh[kShape] = {kMaxT, kMaxS, kMaxOffset, kMaxOffset, 1e9};
   return kHigh[k % kShape];
 }

@@ -3,7 +3,8 @@
 //
 // Coordinates of the descent: per lobe t with alpha_x = 1 / (1 + exp(-t)), s with alpha_y = alpha_x exp(-s^2), the two
 // offsets, psi; then ln amplitude and ln constant a channel. So alpha_y <= alpha_x always, the kink of the lobe at
-// equal alphas (sel.h) is reached at s = 0 and never crossed, and amplitudes stay positive.
+// equal alphas (sel.h) is reached at s = 0 and never crossed, and amplitudes stay positive. All
+// have limits, beyond which a lobe fits single samples or none, or hides between them.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ class SelObjective {
   Eigen::Index size() const { return kShape * lobes_ + (lobes_ + 1) * channels_; }
   Coordinates From(const SelSlice& slice) const;
   SelSlice ToSlice(const Coordinates& u) const;
-  // Within the limits beyond which a lobe fits single samples, or none.
+  // Within the limits.
   Coordinates Clamped(Coordinates u) const;
 
   // Sum of squares; with `hessian` also J^T J and J^T r.
@@ -67,6 +68,7 @@ class SelObjective {
   const std::vector<SelPull>& pulls_;
   Eigen::Index lobes_, channels_;
   std::vector<std::vector<double>> target_;  // transformed measured values, [channel][sample]
+  std::vector<double> most_;                 // ln of the largest amplitude, [channel]
 };
 
 }  // namespace lobefit

@@ -75,6 +75,20 @@ double ErrorUnder(const Material& material, const std::string& metric) {
   return std::nan("");
 }
 
+// A value far from every other must not be fitted by a lobe that is brighter than any sample and passes between them.
+TEST(FitSel, NoLobeHidesBetweenTheSamples) {
+  const SelTable truth = Truth(1);
+  Measurement measurement = MeasurementOf(truth, 0.2);
+  const Material material = FitSel(SelRecipeOf(3), {}, &measurement);
+  double brightest = 0;
+  for (std::size_t i = 0; i < measurement.samples.size(); ++i) {
+    brightest = std::max(brightest, measurement.samples.values[0][i] * measurement.samples.wo_z[i]);
+  }
+  for (const SelSlice& slice : material.sel->slices) {
+    for (const std::vector<double>& amplitude : slice.amplitude) EXPECT_LE(amplitude[0], 4 * brightest * (1 + 1e-12));
+  }
+}
+
 TEST(FitSel, RecoversATableOfLobes) {
   for (const std::size_t lobes : {1, 2}) {
     const SelTable truth = Truth(lobes);
