@@ -17,9 +17,10 @@
 namespace lobefit {
 namespace {
 
-// Shares of the density of normals beside the material's own, found by trial: less starves the tails of nodes, more the
-// peak.
-constexpr double kDensityFloor = 0.1;
+// Shares of the density of normals beside the material's own. Values are stored divided by the density, so the
+// smoothest table is that of a floor in proportion to the diffuse part: within these limits, found by trial. With one
+// floor of 0.1 for all, 90 % of the directions of dark brushed metal came back within 3 %, not 1.3 %.
+constexpr double kLeastFloor = 0.03, kMostFloor = 0.25, kUnknownFloor = 0.1;
 constexpr double kCosineShare = 0.3;
 constexpr double kSteepestViewer = 88.7 * kPi / 180;
 
@@ -70,14 +71,36 @@ class RglTableBuilder {
     }
   }
 
-  // D up to a factor: from f_r(m, m) = F D G / (4 cos^2), where light and viewer stand along the micro normal.
-  double Distribution(const Vec3& m) const {
-    if (options_.normal_distribution) return std::max(0.0, options_.normal_distribution(m));
+  // f_r back to the light, summed over channels, times 4 cos^2: F D G of a specular lobe [Walter eq 20].
+  double Retroreflection(const Vec3& m) const {
     std::vector<double> values(sizes_.channels);
     brdf_(m, m, values.data());
     double sum = 0;
     for (const double value : values) sum += std::isfinite(value) ? std::max(0.0, value) : 0.0;
     return 4 * m.z * m.z * sum;
+  }
+
+  // D up to a factor.
+  double Distribution(const Vec3& m) const {
+    return options_.normal_distribution ? std::max(0.0, options_.normal_distribution(m)) : Retroreflection(m);
+  }
+
+  // The level that f_r keeps where the distribution has ended, as a density: the median over steep normals of what the
+  // distribution, scaled to f_r at its peak, leaves.
+  double DensityFloor() const {
+    if (!options_.normal_distribution) return kUnknownFloor;
+    const auto peak = std::max_element(distribution_.begin(), distribution_.end()) - distribution_.begin();
+    const auto at = static_cast<std::size_t>(peak);
+    const double scale = Retroreflection(normals_[at]) / distribution_[at];
+    std::vector<double> left;
+    for (std::size_t i = 0; i < normals_.size(); i += 7) {
+      const double cosine = normals_[i].z;
+      if (cosine < 0.2) continue;
+      left.push_back((Retroreflection(normals_[i]) / scale - distribution_[i]) / (cosine * cosine));
+    }
+    const auto middle = left.begin() + static_cast<std::ptrdiff_t>(left.size() / 2);
+    std::nth_element(left.begin(), middle, left.end());
+    return std::isfinite(*middle) ? std::clamp(*middle, kLeastFloor, kMostFloor) : kUnknownFloor;
   }
 
   void MakeNdf() {
@@ -99,10 +122,9 @@ class RglTableBuilder {
           distribution_[i] * normals_[i].z * RglNormalJacobian(x, RglTheta(x)) / static_cast<double>(size * size);
     }
     const double scale = integral > 0 && std::isfinite(integral) ? 1 / integral : 0.0;
-    for (double& value : distribution_) {
-      value *= scale;
-      ndf.push_back(static_cast<float>(value + kDensityFloor));
-    }
+    for (double& value : distribution_) value *= scale;
+    const double floor = DensityFloor();
+    for (const double value : distribution_) ndf.push_back(static_cast<float>(value + floor));
   }
 
   // Projected area of the distribution above. The table's values are divided by the same interpolation, so it cancels.
@@ -244,10 +266,10 @@ void WriteRgl(const BrdfFunction& brdf, const Channels& channels, const RglWrite
   const std::size_t count = rgb ? 3 : wavelengths.size();
   const Sizes sizes = {options.isotropic      ? 1
                        : options.azimuths > 0 ? options.azimuths + 1
-                                              : 33,
-                       options.polar_angles > 0 ? options.polar_angles : (options.isotropic ? 16U : 24U),
+                                              : 41,
+                       options.polar_angles > 0 ? options.polar_angles : (options.isotropic ? 16U : 20U),
                        options.density_size > 0 ? options.density_size : (options.isotropic ? 128U : 64U),
-                       options.table_size > 0 ? options.table_size : (options.isotropic ? 64U : 32U), count};
+                       options.table_size > 0 ? options.table_size : (options.isotropic ? 64U : 36U), count};
   const BrdfFunction source = grey ? Repeated(brdf, count) : brdf;
   RglTableBuilder tables(source, options, sizes);
   tables.Build();

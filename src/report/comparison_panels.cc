@@ -28,6 +28,10 @@ std::vector<LegendEntry> ModelLegend(const Compared& compared) {
 std::size_t FreeValues(const Material& material) {
   std::size_t free = 0;
   for (const FittedParameter& parameter : material.parameters) free += parameter.free ? parameter.values.size() : 0;
+  // Of each lobe its shape, and an amplitude a channel; the constants.
+  for (const SelSlice& slice : material.sel ? material.sel->slices : std::vector<SelSlice>()) {
+    free += 5 * slice.lobes.size() + (slice.lobes.size() + 1) * slice.constant.size();
+  }
   return free;
 }
 

@@ -76,8 +76,8 @@ TEST(Rgl, SamplesStandOnTheirNodes) {
   RglWriteOptions options;
   options.azimuths = 8;
   options.polar_angles = 6;
-  options.density_size = 33;
-  options.table_size = 17;
+  options.density_size = 32;
+  options.table_size = 16;
   WriteRgl(Rgb(brdf), kRgb, options, file.path());
   const Measurement m = ReadMeasurement(file.path());
   EXPECT_EQ(m.format, "rgl");
