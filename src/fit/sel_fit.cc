@@ -85,6 +85,14 @@ void Describe(const Recipe& recipe, const Measurement& measurement, const std::v
                     "interpolation between the others",
                     groups - nodes.size(), groups, recipe.sel->lobes));
   }
+  const auto at_limit =
+      std::count_if(nodes.begin(), nodes.end(), [](const SelNode& node) { return node.fit.at_limit; });
+  if (at_limit > 0 && !recipe.sel->bound) {
+    material->remarks.push_back(fmt::format(
+        "{} of {} incident directions have a lobe at the limit of its width, offset or amplitude: fewer lobes "
+        "would do there, or the samples do not determine them",
+        at_limit, nodes.size()));
+  }
   DescribeSource(recipe, measurement, material);
 }
 

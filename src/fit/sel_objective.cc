@@ -104,6 +104,13 @@ SelObjective::Coordinates SelObjective::Clamped(Coordinates u) const {
   return u;
 }
 
+bool SelObjective::IsAtLimit(const Coordinates& u) const {
+  for (Eigen::Index k = 0; k < size(); ++k) {
+    if (u(k) >= High(k) || (k < kShape * lobes_ && u(k) <= Low(k))) return true;
+  }
+  return false;
+}
+
 void SelObjective::Hold(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const {
   for (Eigen::Index k = 0; k < size(); ++k) {
     const bool held = (u(k) <= Low(k) && (*gradient)(k) > 0) || (u(k) >= High(k) && (*gradient)(k) < 0);

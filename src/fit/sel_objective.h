@@ -31,6 +31,9 @@ class SelObjective {
   // Within the limits.
   Coordinates Clamped(Coordinates u) const;
 
+  // Whether a coordinate stands at its limit. An amplitude or constant of nothing is no limit.
+  bool IsAtLimit(const Coordinates& u) const;
+
   // Sum of squares; with `hessian` also J^T J and J^T r.
   double SumSquares(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
   // The pulls' part of the objective, added to hessian and gradient unless null.

@@ -47,6 +47,7 @@ SelSliceFit FitSelSlice(const SelSamples& samples, const SelSlice& start, const 
     fit.sum_squares = objective.SumSquares(u, &hessian, &gradient);
     fit.objective = fit.sum_squares + objective.Pulls(u, &hessian, &gradient);
   }
+  fit.at_limit = objective.IsAtLimit(u);
   fit.slice = objective.ToSlice(u);
   fit.slice.theta_i = start.theta_i;
   fit.slice.phi_i = start.phi_i;

@@ -87,6 +87,7 @@ TEST(FitSel, NoLobeHidesBetweenTheSamples) {
   for (const SelSlice& slice : material.sel->slices) {
     for (const std::vector<double>& amplitude : slice.amplitude) EXPECT_LE(amplitude[0], 4 * brightest * (1 + 1e-12));
   }
+  EXPECT_THAT(material.remarks, testing::Contains(testing::HasSubstr("have a lobe at the limit")));
 }
 
 TEST(FitSel, RecoversATableOfLobes) {
@@ -96,6 +97,7 @@ TEST(FitSel, RecoversATableOfLobes) {
     const Material material = FitSel(SelRecipeOf(lobes), {}, &measurement);
     EXPECT_TRUE(material.termination.converged) << material.termination.message;
     ASSERT_EQ(material.sel->slices.size(), truth.slices.size());
+    EXPECT_THAT(material.remarks, testing::IsEmpty());
     EXPECT_LT(ErrorUnder(material, "relative"), lobes == 1 ? 1e-6 : 1e-4) << lobes;
     if (lobes > 1) continue;
     for (const SelSlice& slice : material.sel->slices) {
