@@ -67,7 +67,14 @@ std::vector<SelNode> MakeSelNodes(const Measurement& measurement, const Recipe& 
     SelNode node;
     node.wi = incidences.wi[g];
     node.samples = SamplesOf(samples, members[g], recipe);
-    node.fitted = node.samples.Subset(StratifiedSubsample(node.samples.size(), kFittedSamples, 1));
+    const std::size_t wanted = measurement.isotropic ? kFittedSamples / 2 : kFittedSamples;
+    node.fitted = node.samples.Subset(StratifiedSubsample(node.samples.size(), wanted, 1));
+    if (measurement.isotropic) {
+      // Tables over half and difference angles have one side of the plane of incidence only, and a lobe would lean to
+      // it: it has nothing to fit on the other.
+      node.samples = node.samples.WithMirrorImages();
+      node.fitted = node.fitted.WithMirrorImages();
+    }
     nodes.push_back(std::move(node));
   }
   if (nodes.empty()) {

@@ -15,6 +15,14 @@ SelSamples SelSamples::Subset(const std::vector<std::size_t>& indices) const {
   return subset;
 }
 
+SelSamples SelSamples::WithMirrorImages() const {
+  std::vector<std::size_t> twice;
+  for (std::size_t i = 0; i < size(); ++i) twice.insert(twice.end(), {i, i});
+  SelSamples both = Subset(twice);
+  for (std::size_t i = 1; i < both.size(); i += 2) both.v[i].y = -both.v[i].y;
+  return both;
+}
+
 SelSamples SelSamples::Mean() const {
   SelSamples mean = *this;
   mean.f_r.assign(1, std::vector<double>(size(), 0.0));

@@ -21,6 +21,8 @@ struct SelSamples {
     return quantity == SelQuantity::kBrdf ? f_r[channel][i] : f_r[channel][i] * cos_o[i];
   }
   SelSamples Subset(const std::vector<std::size_t>& indices) const;
+  // These and their images in the plane of incidence.
+  SelSamples WithMirrorImages() const;
   // One channel, the mean of all.
   SelSamples Mean() const;
 };
