@@ -71,6 +71,24 @@ TEST(Fit, StandardErrorsMatchTheSpreadOverTrials) {
   }
 }
 
+// Each entry of the document says whether it stands at a bound: one that the recipe gives, and none where the truth
+// lies inside.
+TEST(Fit, EachParameterSaysWhetherItStandsAtABound) {
+  const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.3, 0.3, 0, 0, 0);
+  Measurement measurement = Synthetic(truth, StandardLayout(), 0.02, 1);
+  Recipe recipe = DefaultRecipe(truth.model, "bounded");
+  for (const FittedParameter& parameter : Fit(recipe, {}, &measurement).parameters) EXPECT_FALSE(parameter.at_bound);
+  recipe.parameters[0].start = {0.2};
+  recipe.parameters[0].high = 0.25;
+  recipe.parameters[5].high = 0.45;  // of F0: 0.7, 0.6, 0.5
+  const Material bounded = Fit(recipe, {}, &measurement);
+  EXPECT_NEAR(bounded.parameters[0].values[0], 0.25, 1e-9);
+  EXPECT_NEAR(bounded.parameters[5].values[0], 0.45, 1e-9);
+  EXPECT_TRUE(bounded.parameters[0].at_bound);
+  EXPECT_TRUE(bounded.parameters[5].at_bound);
+  EXPECT_FALSE(bounded.parameters[6].at_bound);
+}
+
 TEST(Fit, SameBitsOnOneAndEightThreads) {
   Material materials[2];
   for (int k = 0; k < 2; ++k) {
