@@ -22,9 +22,17 @@ double StudentTCdf(double x, double freedom) {
   // With x = sqrt(freedom) tan(angle) the density is a power of cos(angle) over a finite range.
   const double log_factor = std::lgamma((freedom + 1) / 2) - std::lgamma(freedom / 2) - std::log(kPi) / 2;
   const double end = std::atan2(std::fabs(x), std::sqrt(freedom));
-  const double half =
-      std::exp(log_factor) * IntegrateAdaptive([&](double angle) { return std::pow(std::cos(angle), freedom - 1); },
-                                               0.0, end, {1e-14, 1e-15, 2000});
+  const auto part = [&](double from, double to) {
+    return std::exp(log_factor) *
+           IntegrateAdaptive([&](double angle) { return std::pow(std::cos(angle), freedom - 1); }, from, to,
+                             {1e-14, 1e-15, 2000});
+  };
+  // Of a tail the tail itself: less than a half less its rest would lose all digits and could be negative.
+  if (std::fabs(x) > 2) {
+    const double tail = part(end, kPi / 2);
+    return x < 0 ? tail : 1 - tail;
+  }
+  const double half = part(0, end);
   return x < 0 ? 0.5 - half : 0.5 + half;
 }
 

@@ -1,5 +1,6 @@
 // The page: the panels as pictures, and the same data live.
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "lobefit/base/base64.h"
@@ -23,9 +24,16 @@ constexpr const char* kScript =
     ;
 
 struct Figure {
-  std::string id, title, png;
+  std::string id, description, png;
   bool wide = true;
 };
+
+// What stands in the picture, for those who do not see it: title and legend.
+std::string Description(const Panel& panel) {
+  std::vector<std::string> words;
+  for (const LegendEntry& entry : panel.legend) words.push_back(entry.text);
+  return words.empty() ? panel.title : Join({panel.title, ": ", Join(words, ", ")}, "");
+}
 
 std::vector<Figure> DrawFigures(const std::vector<Panel>& panels, const std::shared_ptr<Fonts>& fonts,
                                 std::size_t most_bytes) {
@@ -36,7 +44,7 @@ std::vector<Figure> DrawFigures(const std::vector<Panel>& panels, const std::sha
     std::size_t bytes = 0;
     for (const Panel& panel : panels) {
       const Canvas canvas = DrawPanelAlone(panel, panel.wide ? 850 : 430, scale, fonts);
-      figures.push_back({panel.id, panel.title, EncodePng(canvas.pixels(), 0), panel.wide});
+      figures.push_back({panel.id, Description(panel), EncodePng(canvas.pixels(), 0), panel.wide});
       bytes += figures.back().png.size();
     }
     if (bytes <= most_bytes) break;
@@ -45,38 +53,72 @@ std::vector<Figure> DrawFigures(const std::vector<Panel>& panels, const std::sha
 }
 
 std::string FigureHtml(const Figure& figure) {
-  return Join({"<figure id=\"", figure.id, "\"><img alt=\"", HtmlText(figure.title), "\" src=\"data:image/png;base64,",
-               Base64(figure.png), "\"></figure>\n"},
+  return Join({"<figure id=\"", figure.id, "\"><img alt=\"", HtmlText(figure.description),
+               "\" src=\"data:image/png;base64,", Base64(figure.png), "\"></figure>\n"},
               "");
 }
 
-// What the script and the shader of the page evaluate; other models are shown in pictures only.
+// What the shader of the page evaluates; other models are shown in pictures only.
 bool IsLive(const Model& model) {
-  return !model.lobes.empty() && model.diffuse != Diffuse::kMicrofacet &&
+  constexpr std::size_t kMostLobes = 8;  // of the shader
+  return !model.lobes.empty() && model.lobes.size() <= kMostLobes &&
          std::all_of(model.lobes.begin(), model.lobes.end(), [](const Lobe& l) {
-           return FamilyOf(l.ndf) == NdfFamily::kGgx && l.masking <= Masking::kSmithHeight &&
-                  (l.fresnel == Fresnel::kSchlick || l.fresnel == Fresnel::kNone);
+           return FamilyOf(l.ndf) == NdfFamily::kGgx || FamilyOf(l.ndf) == NdfFamily::kBeckmann;
          });
 }
 
 constexpr const char* kLive = R"(<div class="live">
 <div>
 <section id="sphereSection"><h2>Under a light</h2>
-<canvas id="sphere" tabindex="0" role="img" aria-label="Spheres of the material, measured and fitted, under one light. Arrow keys move the light."></canvas>
+<canvas id="sphere" role="img" aria-label="Spheres of the material, measured and fitted, under one light."></canvas>
 <div class="pair" id="names"><span>measured</span><span>fitted</span></div>
-<p class="note">Drag on a sphere, or use the arrow keys, to move the light. Grey: no measured sample is near.</p></section>
-<p id="noGl" class="note hidden">This browser offers no WebGL 2: the pictures below show the spheres that would be live here.</p>
+<div class="controls"><label for="lightX">light from left to right <input id="lightX" type="range" min="-120" max="120" step="1"></label><label for="lightY">from below to above <input id="lightY" type="range" min="-85" max="85" step="1"></label></div>
+<p class="note">Drag on a sphere, or use the sliders, to move the light. Grey: no measured sample is near.</p></section>
+<p id="noGl" class="note hidden">This browser offers no WebGL 2: the pictures below show the spheres, and parameters cannot be moved.</p>
 <section id="sliceSection"><h2>Slice in the plane of incidence</h2>
-<div class="controls"><label>polar angle <select id="theta"></select></label><label id="phiBox">azimuth <select id="phi"></select></label><button id="scale" type="button">linear scale</button></div>
+<div class="controls"><label>polar angle <select id="theta"></select></label><label id="phiBox">azimuth <select id="phi"></select></label><button id="scale" type="button" aria-pressed="true">logarithmic scale</button></div>
 <svg id="slice" viewBox="0 0 860 430" tabindex="0" role="img"></svg>
-<div id="hover" aria-live="polite">Point at a measured value, or step through them with the arrow keys.</div></section>
+<div class="controls"><label for="point">measured value <input id="point" type="range" min="0" value="0" step="1"></label></div>
+<div id="hover" role="status">Point at a measured value, or step through them with the slider.</div></section>
 </div>
-<section><h2>Parameters, live</h2>
+<div>
+<section id="parameterSection"><h2>Parameters, live</h2>
 <div id="sliders"></div>
 <div class="controls"><button id="reset" type="button">Back to the fit</button></div>
-<p class="note">Sliders move the sphere and the curve of the slice; the pictures below stay with the fit.</p></section>
+<p class="note">Sliders move the sphere and the curve of the slice; the pictures below stay with the fit. Arrow keys step, with Shift finely.</p></section>
+)";
+constexpr const char* kLiveEnd = R"(</div>
 </div>
 )";
+
+// The parameters as text, for reading aloud and for copying.
+std::string ParameterTable(const ReportData& data) {
+  const std::vector<Parameter> parameters = Parameters(data.material.model);
+  std::string rows;
+  for (std::size_t p = 0; p < parameters.size() && p < data.material.parameters.size(); ++p) {
+    const Parameter& parameter = parameters[p];
+    const FittedParameter& fitted = data.material.parameters[p];
+    const double factor = 1 / InsideFactor(parameter);
+    for (std::size_t c = 0; c < fitted.values.size(); ++c) {
+      const auto error = [&](const std::vector<double>& errors) {
+        const bool known = fitted.free && c < errors.size() && std::isfinite(errors[c]) && errors[c] > 0;
+        return known ? JsonNumber(errors[c] * factor, 2) : fitted.free ? "not determined" : "fixed";
+      };
+      std::string name = parameter.json_name;
+      if (parameter.per_channel && fitted.values.size() > 1) name += " " + data.channel_names[c];
+      rows += Join(
+          {"<tr><th scope=\"row\">", HtmlText(name), "</th><td>", JsonNumber(fitted.values[c] * factor, 6), "</td><td>",
+           error(fitted.standard_error), "</td><td>", error(fitted.standard_error_clustered), "</td></tr>\n"},
+          "");
+    }
+  }
+  if (rows.empty()) return "";
+  return Join({"<section><details><summary>Table of the parameters</summary>\n<table><thead><tr><th "
+               "scope=\"col\">parameter</th><th scope=\"col\">value</th><th scope=\"col\">standard error</th><th "
+               "scope=\"col\">clustered by incidence</th></tr></thead><tbody>\n",
+               rows, "</tbody></table></details></section>\n"},
+              "");
+}
 
 }  // namespace
 
@@ -101,8 +143,10 @@ std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels,
   const bool live = IsLive(material.model);
   html += "<main>\n";
   html += live ? kLive
-               : "<p class=\"note\">This model is shown in pictures only; GGX lobes with Smith masking and Schlick's "
-                 "Fresnel term come with a live sphere, slice and sliders.</p>\n";
+               : "<p class=\"note\">This model is shown in pictures only; GGX and Beckmann lobes come with a live "
+                 "sphere, slice and sliders.</p>\n";
+  html += ParameterTable(data);
+  if (live) html += kLiveEnd;
   html += R"(<h2>The fit</h2>
 <div class="panels">
 )";

@@ -20,7 +20,7 @@ namespace lobefit {
 namespace {
 
 constexpr std::array<std::size_t, 3> kTable = {90, 45, 8};  // sqrt(theta_h), theta_d, phi_d
-constexpr std::size_t kMostSliceValues = 60000;
+constexpr std::size_t kMostSliceValues = 40000;
 constexpr std::size_t kMostPointsOfASlice = 240;
 constexpr int kReferenceSize = 40;
 
@@ -89,10 +89,16 @@ std::string SlicesJson(const ReportData& data) {
       return JsonList(points,
                       [&](const SlicePoint& p) { return JsonNumber(data.measurement.samples.values[c][p.sample], 4); });
     });
+    // What the fit says at the same places, for browsers that cannot evaluate it.
+    const std::string f = JsonList(data.shown_channels, [&](std::size_t c) {
+      return JsonList(points, [&](const SlicePoint& p) {
+        return JsonNumber(static_cast<double>(data.fitted_values[c][p.sample]), 4);
+      });
+    });
     const std::string x = JsonList(points, [&](const SlicePoint& p) { return hundredths(p.theta); });
-    list.push_back(Join(
-        {"{\"theta\":", hundredths(slice.theta), ",\"phi\":", hundredths(slice.phi), ",\"x\":", x, ",\"y\":", y, "}"},
-        ""));
+    list.push_back(Join({"{\"theta\":", hundredths(slice.theta), ",\"phi\":", hundredths(slice.phi), ",\"x\":", x,
+                         ",\"y\":", y, ",\"f\":", f, "}"},
+                        ""));
   }
   return Join({"{\"outgoing\":", slices.outgoing_stays ? "true" : "false", ",\"list\":[", Join(list, ","), "]}"}, "");
 }
@@ -124,6 +130,8 @@ std::string ParametersJson(const ReportData& data) {
     bool logarithmic = false;
     if (parameter.name.find("alpha") != std::string::npos)
       low = std::min(0.01, *std::min_element(values.begin(), values.end())), logarithmic = true;
+    if (parameter.name.ends_with("eta") || parameter.name.ends_with("k"))
+      high = std::min(high, std::max(6.0, 2 * most));
     if (parameter.name.find("scale") != std::string::npos) high = std::max(1.0, 4 * most);
     if (parameter.group == ParameterGroup::kDiffuse) high = std::max(1.0, 1.5 * most);
     list.push_back(Join(
@@ -175,12 +183,18 @@ std::string DataJson(const ReportData& data) {
     rgb.push_back(to_color.Linear(unit.data()));
   }
   const auto number = [](double v) { return JsonNumber(v, 12); };
-  const std::string lobes = JsonList(model.lobes, [](const Lobe& lobe) {
-    return Join({"{\"ndf\":", JsonString(NameOf(NdfChoices(), lobe.ndf)),
-                 ",\"masking\":", JsonString(NameOf(MaskingChoices(), lobe.masking)),
-                 ",\"fresnel\":", JsonString(NameOf(FresnelChoices(), lobe.fresnel)), "}"},
-                "");
-  });
+  std::vector<std::string> lobes;
+  for (std::size_t l = 0; l < model.lobes.size(); ++l) {
+    const Lobe& lobe = model.lobes[l];
+    lobes.push_back(Join({"{\"family\":", FamilyOf(lobe.ndf) == NdfFamily::kBeckmann ? "1" : "0",
+                          ",\"round\":", IsRound(lobe.ndf) ? "true" : "false",
+                          ",\"masking\":", JsonString(NameOf(MaskingChoices(), lobe.masking)),
+                          ",\"fresnel\":", JsonString(NameOf(FresnelChoices(), lobe.fresnel)),
+                          ",\"first\":", std::to_string(FirstParameter(model, l)),
+                          ",\"fresnelParameters\":", std::to_string(FresnelParameters(lobe.fresnel)), "}"},
+                         ""));
+  }
+  const char* diffuse = model.diffuse == Diffuse::kNone ? "0" : model.diffuse == Diffuse::kLambert ? "1" : "2";
   return Join({"{\"channels\":",
                JsonList(data.channel_names, [](const std::string& s) { return JsonString(s); }),
                ",\"colors\":",
@@ -192,10 +206,10 @@ std::string DataJson(const ReportData& data) {
                ",\"rgb\":",
                JsonList(rgb, [&](const std::array<double, 3>& color) { return JsonList(color, number); }),
                ",\"model\":{\"diffuse\":",
-               model.diffuse == Diffuse::kLambert ? "true" : "false",
-               ",\"lobes\":",
-               lobes,
-               "},\"parameters\":",
+               diffuse,
+               ",\"lobes\":[",
+               Join(lobes, ","),
+               "]},\"parameters\":",
                ParametersJson(data),
                ",\"slices\":",
                SlicesJson(data),

@@ -26,6 +26,18 @@ TEST(StudentT, OneDegreeOfFreedomIsCauchyAndTwoHaveAClosedForm) {
   }
 }
 
+TEST(StudentT, FarTailsStayPositiveAndFall) {
+  for (const double freedom : {3.0, 9.0, 40.0, 500.0}) {
+    double before = 1;
+    for (const double x : {-1.9, -2.1, -5.0, -9.0, -15.0, -30.0}) {
+      const double tail = StudentTCdf(x, freedom);
+      EXPECT_GT(tail, 0) << x << ' ' << freedom;
+      EXPECT_LT(tail, before) << x << ' ' << freedom;
+      before = tail;
+    }
+  }
+}
+
 TEST(StudentT, QuantileInvertsTheDistribution) {
   for (const double freedom : {1.0, 2.5, 7.0, 35.0, 1e4}) {
     for (const double p : {1e-6, 0.01, 0.16, 0.5, 0.84, 0.999}) {
