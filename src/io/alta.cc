@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,23 @@ constexpr double kLargestCoordinate = 2 * kPi + 1e-6;
 // Of the narrowest interval; a weight must not vanish in the square of a wide one.
 constexpr double kLeastWeight = 1e-12;
 
+// What the place of a row means: the line of a text, or the number of a row of bytes.
+struct RowPlaces {
+  const InputFile& file;
+  std::size_t first_byte = 0, bytes_per_row = 0;  // 0 bytes: lines
+
+  [[noreturn]] void Fail(std::size_t place, const std::string& what) const {
+    if (bytes_per_row == 0) FailAtLine(file, place, what);
+    FailAtByte(file, first_byte + place * bytes_per_row, "row " + std::to_string(place + 1) + ": " + what);
+  }
+};
+
 // Half-widths of the confidence intervals, squared, until it is known how the columns are meant.
 class Intervals {
  public:
-  // The columns of one row, in the order of the outputs; factor turns a value into f_r. Call Keep where the sample is
-  // used.
-  void Take(const AltaLayout& layout, const double* values, const double* columns, double factor, std::size_t line) {
+  // The columns of one row, in the order of the outputs; factor turns a value into f_r; place as in RowTaker. Call Keep
+  // where the sample is used.
+  void Take(const AltaLayout& layout, const double* values, const double* columns, double factor, std::size_t place) {
     as_bounds_ = as_offsets_ = 0;
     std::size_t at = 0, outputs = 0;
     for (std::size_t c = 0; c < layout.outputs; ++c) {
@@ -32,14 +44,14 @@ class Intervals {
       const double low = columns[at], high = layout.intervals[c] == 2 ? columns[at + 1] : low;
       at += static_cast<std::size_t>(layout.intervals[c]);
       ++outputs;
-      if (!(low >= 0) || !(high >= 0)) Note(line, &not_offsets_);
+      if (!(low >= 0) || !(high >= 0)) Note(place, &not_offsets_);
       if (layout.intervals[c] == 2) {
         has_pairs_ = true;
-        if (!(low <= values[c]) || !(values[c] <= high)) Note(line, &not_bounds_);
+        if (!(low <= values[c]) || !(values[c] <= high)) Note(place, &not_bounds_);
         as_bounds_ += 0.25 * (high - low) * (high - low);
       } else {
         as_bounds_ += low * low;
-        if (!(low >= 0)) Note(line, &not_bounds_);
+        if (!(low >= 0)) Note(place, &not_bounds_);
       }
       as_offsets_ += 0.25 * (high + low) * (high + low);
     }
@@ -53,16 +65,17 @@ class Intervals {
   }
 
   // Weights 1 / variance into the samples, what was decided into the conventions.
-  void Finish(const InputFile& file, const ReadOptions& options, Measurement* measurement) {
-    const bool bounds = options.alta_interval ? *options.alta_interval == IntervalKind::kBounds : not_bounds_ == 0;
-    const std::size_t wrong = bounds ? not_bounds_ : not_offsets_;
-    if (wrong != 0) {
-      FailAtLine(file, wrong,
-                 bounds
-                     ? "the value does not lie between the two columns of its interval; --alta-interval offsets reads "
-                       "them as distances from the value"
-                     : "a half-width of the confidence interval is negative or not a number, and the value does not "
-                       "lie between its two columns either");
+  void Finish(const RowPlaces& places, const ReadOptions& options, Measurement* measurement) {
+    const bool bounds = options.alta_interval ? *options.alta_interval == IntervalKind::kBounds : !not_bounds_;
+    const std::optional<std::size_t> wrong = bounds ? not_bounds_ : not_offsets_;
+    if (wrong) {
+      places.Fail(*wrong, !has_pairs_
+                              ? "the half-width of a confidence interval is negative or not a number; it must be 0 or more"
+                          : bounds
+                              ? "the value does not lie between the two columns of its interval; --alta-interval offsets "
+                                "reads them as distances from the value"
+                              : "a half-width of the confidence interval is negative or not a number, and the value does "
+                                "not lie between its two columns either");
     }
     std::vector<double>& variance = bounds ? bounds_ : offsets_;
     double smallest = std::numeric_limits<double>::infinity();
@@ -92,28 +105,27 @@ class Intervals {
   }
 
  private:
-  static void Note(std::size_t line, std::size_t* first) {
-    if (*first == 0) *first = line;
+  static void Note(std::size_t place, std::optional<std::size_t>* first) {
+    if (!*first) *first = place;
   }
 
   double as_bounds_ = 0, as_offsets_ = 0;
   std::vector<double> bounds_, offsets_;
-  std::size_t not_bounds_ = 0, not_offsets_ = 0;  // first line where the reading is impossible, 0: none
+  std::optional<std::size_t> not_bounds_, not_offsets_;  // first place where the reading is impossible
   bool has_pairs_ = false;
 };
 
 class RowTaker {
  public:
-  explicit RowTaker(const InputFile& file, const AltaLayout& layout)
-      : file_(file), layout_(layout), builder_(layout.channels), values_(layout.outputs) {}
+  RowTaker(const RowPlaces& places, const AltaLayout& layout)
+      : places_(places), layout_(layout), builder_(layout.channels), values_(layout.outputs) {}
 
-  // One row: coordinates, values, columns of confidence; `place` is the line of text or the number of the row.
+  // One row: coordinates, values, columns of confidence, and its place.
   void Take(const double* row, const double* columns, std::size_t place) {
     for (std::size_t i = 0; i < layout_.input->dimension; ++i) {
       if (std::fabs(row[i]) > kLargestCoordinate) {
-        FailAtLine(file_, place,
-                   "coordinate " + std::to_string(i + 1) + " is " + FormatDouble(row[i]) +
-                       ", beyond 2 pi; ALTA angles are in radians and vectors of length 1");
+        places_.Fail(place, "coordinate " + std::to_string(i + 1) + " is " + FormatDouble(row[i]) +
+                                ", beyond 2 pi; ALTA angles are in radians and vectors of length 1");
       }
     }
     Vec3 wi = {}, wo = {};
@@ -128,14 +140,14 @@ class RowTaker {
   }
 
   Measurement Finish(const ReadOptions& options) {
-    if (layout_.interval_columns() > 0) intervals_.Finish(file_, options, &builder_.measurement());
+    if (layout_.interval_columns() > 0) intervals_.Finish(places_, options, &builder_.measurement());
     Measurement measurement = builder_.Finish();
     ScaleToMeanOne(&measurement.samples.weight);
     return measurement;
   }
 
  private:
-  const InputFile& file_;
+  RowPlaces places_;
   const AltaLayout& layout_;
   MeasurementBuilder builder_;
   std::vector<double> values_;
@@ -159,7 +171,7 @@ Measurement ReadText(const InputFile& file, const AltaHeader& header, AltaLayout
           fields.size() == plain + layout->outputs * static_cast<std::size_t>(layout->intervals[0])) {
         layout->intervals.assign(layout->outputs, layout->intervals[0]);
       }
-      taker.emplace(file, *layout);
+      taker.emplace(RowPlaces{file}, *layout);
     }
     const std::size_t expected = plain + layout->interval_columns();
     if (fields.size() != expected) {
@@ -231,7 +243,7 @@ Measurement ReadBinary(const InputFile& file, const AltaHeader& header, AltaLayo
                    "' where #END_STREAM should end the data; "
                    "#SAMPLE_COUNT, #DIM or #VS does not fit the file");
   }
-  RowTaker taker(file, *layout);
+  RowTaker taker({file, header.end, columns * sizeof(double)}, *layout);
   std::vector<double> row(columns), intervals(layout->interval_columns());
   const char* data = file.bytes.data() + header.end;
   for (std::size_t r = 0; r < rows; ++r) {

@@ -7,17 +7,17 @@
 // that of the receiver's plane, counted so that at 90 degrees a positive receive angle lies on the light's side; the
 // light is at azimuth 0, so phi_o = azimuth - 90 degrees.
 #include <cmath>
-#include <map>
+#include <optional>
 #include <utility>
 
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv_header.h"
 #include "lobefit/io/csv_layout.h"
+#include "lobefit/io/csv_wavelengths.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/options.h"
 #include "lobefit/io/place.h"
 #include "lobefit/measurement/noise.h"
-#include "lobefit/measurement/pair_index.h"
 #include "lobefit/measurement/repeats.h"
 
 namespace lobefit {
@@ -43,61 +43,6 @@ class AngleCache {
   double angle_ = 0, sin_ = 0, cos_ = 1;
 };
 
-// Rows whose wavelengths stand in rows of their own, gathered to one sample a pair of directions.
-class WavelengthTable {
- public:
-  bool Add(const Vec3& wi, const Vec3& wo, double nm, double value, std::uint32_t line) {
-    const auto [channel, is_new] = channels_.try_emplace(nm, columns_.size());
-    if (is_new) columns_.emplace_back();
-    const std::size_t pair = pairs_.FindOrAdd(wi, wo);
-    if (pair == directions_.size()) directions_.push_back({wi, wo, line});
-    std::vector<double>& column = columns_[channel->second];
-    if (column.size() <= pair) column.resize(pair + 1, std::nan(""));
-    if (!std::isnan(column[pair])) return false;
-    column[pair] = value;
-    return true;
-  }
-
-  Channels ChannelNames() const {
-    Channels channels;
-    for (const auto& [nm, column] : channels_) {
-      channels.names.push_back(FormatDouble(nm) + "nm");
-      channels.wavelengths_nm.push_back(nm);
-    }
-    return channels;
-  }
-
-  // Directions that lack a wavelength are counted as holes.
-  void MoveTo(MeasurementBuilder* builder) const {
-    std::vector<double> values(channels_.size());
-    for (std::size_t pair = 0; pair < directions_.size(); ++pair) {
-      std::size_t channel = 0;
-      bool complete = true;
-      for (const auto& [nm, column] : channels_) {
-        const std::vector<double>& array = columns_[column];
-        values[channel] = pair < array.size() ? array[pair] : std::nan("");
-        complete = complete && !std::isnan(values[channel]);
-        ++channel;
-      }
-      if (!complete) {
-        builder->Skip(SetAsideReason::kHole);
-        continue;
-      }
-      builder->Add(directions_[pair].wi, directions_[pair].wo, values.data(), directions_[pair].line);
-    }
-  }
-
- private:
-  struct Directions {
-    Vec3 wi, wo;
-    std::uint32_t line;
-  };
-  std::map<double, std::size_t> channels_;  // nanometres -> index into columns_
-  std::vector<std::vector<double>> columns_;
-  std::vector<Directions> directions_;
-  PairIndex pairs_;
-};
-
 class CsvReader {
  public:
   CsvReader(const InputFile& file, const ReadOptions& options) : file_(file), options_(options) {}
@@ -112,13 +57,19 @@ class CsvReader {
           file_, header_.names_line,
           "a wavelength column goes with one column of values, but there are " + std::to_string(layout_.values.size()));
     }
+    if (layout_.wavelength != kNoColumn) {
+      by_wavelength_.emplace(HasSigmas()    ? WavelengthTable::Weights::kSigma
+                             : HasWeights() ? WavelengthTable::Weights::kWeight
+                                            : WavelengthTable::Weights::kNone,
+                             options_.repeated == RepeatedRows::kMean);
+    }
     MeasurementBuilder builder(layout_.channels);
     fields_.resize(header_.columns.size());
     ReadRows(&builder);
-    if (layout_.wavelength != kNoColumn) {
-      MeasurementBuilder pivoted(by_wavelength_.ChannelNames());
+    if (by_wavelength_) {
+      MeasurementBuilder pivoted(by_wavelength_->ChannelNames());
       pivoted.measurement().set_aside = builder.measurement().set_aside;
-      by_wavelength_.MoveTo(&pivoted);
+      by_wavelength_->MoveTo(&pivoted);
       return Finish(&pivoted, notes);
     }
     return Finish(&builder, notes);
@@ -141,7 +92,7 @@ class CsvReader {
       const std::vector<double> sigma = std::exchange(measurement.samples.weight, {});
       WeighBySigma(sigma, &measurement);
     }
-    if (measurement.set_aside[SetAsideReason::kDuplicate] > 0 && layout_.wavelength == kNoColumn) {
+    if (measurement.set_aside[SetAsideReason::kDuplicate] > 0) {
       remarks.emplace_back("directions occur again; --repeated mean averages their rows instead of keeping the first");
     }
     measurement.conventions = notes.conventions;
@@ -325,13 +276,13 @@ class CsvReader {
     const double factor = BrdfFactor(layout_.value_kind, wi.z, wo.z);
     values_.resize(layout_.values.size());
     for (std::size_t c = 0; c < values_.size(); ++c) values_[c] = factor * fields_[layout_.values[c]];
-    if (layout_.wavelength != kNoColumn) {
-      AddWavelength(wi, wo, line, builder);
-      return;
-    }
     double weight = 1;
     if (!WeightOfRow(line, factor, &weight)) {
       builder->Skip(SetAsideReason::kFlagged);
+      return;
+    }
+    if (by_wavelength_) {
+      AddWavelength({wi, wo, 0, values_[0], weight, line}, builder);
       return;
     }
     if (builder->Add(wi, wo, values_.data(), line) && HasWeights()) {
@@ -339,16 +290,17 @@ class CsvReader {
     }
   }
 
-  void AddWavelength(const Vec3& wi, const Vec3& wo, std::uint32_t line, MeasurementBuilder* builder) {
+  void AddWavelength(WavelengthTable::Row row, MeasurementBuilder* builder) {
     const double number = fields_[layout_.wavelength];
     if (!std::isfinite(number) || number <= 0) {
-      FailAtLine(file_, line, "the wavelength is " + FormatDouble(number) + "; it must be positive");
+      FailAtLine(file_, row.line, "the wavelength is " + FormatDouble(number) + "; it must be positive");
     }
     // Nanometres of an optical instrument have three digits or more, micrometres at most two before the point.
     const double nm = number * header_.nm_per_wavelength_unit.value_or(number < 100 ? 1000.0 : 1.0);
-    if (!std::isfinite(values_[0])) {
+    row.nm = std::round(nm * 1e6) / 1e6;
+    if (!std::isfinite(row.value)) {
       builder->Skip(SetAsideReason::kNotFinite);
-    } else if (!by_wavelength_.Add(wi, wo, std::round(nm * 1e6) / 1e6, values_[0], line)) {
+    } else if (!by_wavelength_->Add(row)) {
       builder->Skip(SetAsideReason::kDuplicate);
     }
   }
@@ -392,7 +344,7 @@ class CsvReader {
   bool flip_incident_ = false;
   AngleCache theta_i_, phi_i_, theta_o_, phi_o_;
   std::vector<double> fields_, values_;
-  WavelengthTable by_wavelength_;
+  std::optional<WavelengthTable> by_wavelength_;  // where a column holds the wavelength
 };
 
 }  // namespace

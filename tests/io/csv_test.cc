@@ -142,6 +142,36 @@ TEST(Csv, WavelengthsAsColumnsAndAsRows) {
   EXPECT_EQ(rows.set_aside[SetAsideReason::kDuplicate], 1U);  // 20 degrees has 450 nm twice
 }
 
+TEST(Csv, RowsOfAWavelengthKeepTheirUncertainties) {
+  const Measurement m = Read(
+      "lambda,theta_i,theta_o,f,sigma\n550,10,20,2,0.3\n450,10,20,1,0.4\n550,10,30,2,3\n450,10,30,1,4\n");
+  const Measurement same = Read("theta_i,theta_o,450nm,550nm,sigma\n10,20,1,2,0.3535533905932738\n"
+                                "10,30,1,2,3.5355339059327378\n");
+  ASSERT_EQ(m.samples.weight.size(), 2U);
+  ASSERT_EQ(same.samples.weight.size(), 2U);
+  EXPECT_GT(m.samples.weight[0], 1.5 * m.samples.weight[1]);
+  for (const std::size_t i : {0, 1}) EXPECT_NEAR(m.samples.weight[i], same.samples.weight[i], 1e-14);
+
+  const Measurement weighted =
+      Read("lambda,theta_i,theta_o,f,weight\n550,10,20,2,1\n450,10,20,1,3\n550,10,30,2,6\n450,10,30,1,6\n450,9,9,1,0\n");
+  ASSERT_EQ(weighted.samples.weight.size(), 2U);
+  EXPECT_NEAR(weighted.samples.weight[1] / weighted.samples.weight[0], 3, 1e-15);
+  EXPECT_EQ(weighted.set_aside[SetAsideReason::kFlagged], 1U);
+}
+
+TEST(Csv, RepeatedRowsOfAWavelengthAreMergedWhenAsked) {
+  ReadOptions options;
+  options.repeated = RepeatedRows::kMean;
+  const Measurement m = Read(
+      "lambda,theta_i,theta_o,f\n550,10,20,2\n450,10,20,1\n550,10,20,4\n450,10,20,3\n450,10,20,9\n550,10,30,1\n"
+      "450,10,30,1\n",
+      options);
+  ASSERT_EQ(m.samples.size(), 2U);
+  EXPECT_EQ(F(m, 0, 0), 2);
+  EXPECT_EQ(F(m, 0, 1), 3);
+  EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 1U);  // the third row of 450 nm has no fellow at 550 nm
+}
+
 TEST(Csv, CountsWhatItSetsAside) {
   const Measurement m = Read("theta_i,theta_o,f\n10,20,1\n10,20,2\n90,20,3\n10,30,nan\n10,40,inf\n10,95,1\nnan,3,1\n");
   EXPECT_EQ(m.samples.size(), 1U);
