@@ -98,8 +98,8 @@ std::string Summary(const Material& material) {
   for (const MetricError& error : material.errors) text += fmt::format("  {} {:.3g}", error.metric, error.rms);
   text += '\n';
   if (material.minima.size() > 1) {
-    text += fmt::format("{} distinct minima found, the next one costs {:.3g} times as much\n", material.minima.size(),
-                        material.minima[1].cost / material.minima[0].cost);
+    text += fmt::format("{} distinct minima found, the next one costs {:.3g} % more\n", material.minima.size(),
+                        100 * (material.minima[1].cost / material.minima[0].cost - 1));
   }
   for (const std::string& remark : material.remarks) text += "Note: " + remark + '\n';
   for (const std::string& direction : material.degenerate) text += "Not determined: " + direction + '\n';

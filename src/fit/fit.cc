@@ -15,6 +15,7 @@
 #include "lobefit/fit/misfit.h"
 #include "lobefit/fit/prediction.h"
 #include "lobefit/fit/problem.h"
+#include "lobefit/fit/rivals.h"
 #include "lobefit/fit/search.h"
 #include "lobefit/fit/uncertainty.h"
 #include "lobefit/math/directions.h"
@@ -145,20 +146,9 @@ MeasurementTraits TraitsOf(const Measurement& measurement) {
   traits.isotropic = measurement.isotropic;
   traits.samples = measurement.samples.size();
   // Isotropic tables are stored with the half vector in one plane, but their samples are not in a plane of incidence.
-  traits.in_plane = !measurement.isotropic && IsInPlane(measurement.samples);
-  if (traits.in_plane) {
-    double best = 0;
-    for (std::size_t i = 0; i < measurement.samples.size(); ++i) {
-      const Vec3 wo = measurement.samples.wo(i);
-      const double length = std::hypot(wo.x, wo.y);
-      if (length <= best) continue;
-      best = length;
-      // The plane's azimuth in (-pi/2, pi/2].
-      traits.plane_azimuth = std::atan(wo.y / wo.x);
-      if (wo.x == 0) traits.plane_azimuth = kPi / 2;
-    }
-    if (std::fabs(traits.plane_azimuth) < 1e-6) traits.plane_azimuth = 0;
-  }
+  const std::optional<double> plane = PlaneAzimuth(measurement.samples);
+  traits.in_plane = !measurement.isotropic && plane;
+  if (traits.in_plane) traits.plane_azimuth = *plane;
   return traits;
 }
 
@@ -218,6 +208,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   const Uncertainty uncertainty = EstimateUncertainty(problem, layout, best.u, incidences, &pool);
   material.degenerate = uncertainty.degenerate;
   Report(layout, best.u, uncertainty, &material);
+  const bool has_rival = FlagRivals(problem, layout, samples, minima, &pool, &material);
   material.remarks = measurement->remarks;
   material.misfit = TestMisfit(problem, layout, best.u, samples, incidences);
   if (material.misfit->flagged) material.remarks.push_back(ToRemark(*material.misfit));
@@ -247,7 +238,8 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         "would leave it; are these values of a sample?",
         100 * std::max(0.0, explained)));
   }
-  material.termination = {best.converged, uncertainty.determined && !(explained < kLeastExplained), best.message,
+  material.termination = {best.converged, uncertainty.determined && !has_rival && !(explained < kLeastExplained),
+                          best.message,
                           best.iterations};
   material.source = {measurement->source, measurement->sha256, measurement->format, measurement->conventions};
   material.recipe_name = recipe.name;

@@ -73,10 +73,12 @@ void Refine(const Problem& problem, const Layout& layout, std::size_t most, doub
       minimum.solution = Solve(problem, layout, minimum.solution.u, finish, pool);
       minimum.solution.iterations += before;
       minimum.samples = problem.size();
+      minimum.on_all_samples = true;
       ++refined;
     } else {
       minimum.solution.cost *= static_cast<double>(problem.size()) / static_cast<double>(minimum.samples);
       minimum.samples = problem.size();
+      minimum.on_all_samples = false;
     }
   }
   // Costs of different subsamples compare roughly only: those that were refined come first.

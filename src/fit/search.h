@@ -14,7 +14,9 @@ namespace lobefit {
 struct DistinctMinimum {
   Solution solution;
   std::size_t starts = 1;   // descents that ended here
-  std::size_t samples = 0;  // on how many samples it was last descended; Solution::cost is on all (scaled if fewer)
+  std::size_t samples = 0;  // on how many samples it was last descended
+  // Solution::cost is on all samples; false: scaled from fewer.
+  bool on_all_samples = true;
 };
 
 // Distinct minima, the best first; it alone is sure to be descended on all samples. Empty where no start has a finite

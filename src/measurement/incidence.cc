@@ -51,26 +51,30 @@ Incidences GroupByIncidence(const Measurement& measurement, double resolution) {
   return incidences;
 }
 
-bool IsInPlane(const Samples& samples) {
+std::optional<double> PlaneAzimuth(const Samples& samples) {
   constexpr double kTolerance = 1e-6;
-  double best = 0, nx = 0, ny = 0;
-  // The direction farthest from the normal fixes the plane's azimuth.
+  // The direction farthest from the normal fixes the plane.
+  double best = 0, x = 1, y = 0;
+  const auto consider = [&](double to_x, double to_y) {
+    const double length = std::hypot(to_x, to_y);
+    if (length <= best) return;
+    best = length;
+    x = to_x / length;
+    y = to_y / length;
+  };
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    for (const auto& [x, y] :
-         {std::pair{samples.wi_x[i], samples.wi_y[i]}, std::pair{samples.wo_x[i], samples.wo_y[i]}}) {
-      const double length = std::hypot(x, y);
-      if (length > best) {
-        best = length;
-        nx = -y / length;
-        ny = x / length;
-      }
-    }
+    consider(samples.wi_x[i], samples.wi_y[i]);
+    consider(samples.wo_x[i], samples.wo_y[i]);
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (std::fabs(nx * samples.wi_x[i] + ny * samples.wi_y[i]) > kTolerance) return false;
-    if (std::fabs(nx * samples.wo_x[i] + ny * samples.wo_y[i]) > kTolerance) return false;
+    if (std::fabs(x * samples.wi_y[i] - y * samples.wi_x[i]) > kTolerance) return std::nullopt;
+    if (std::fabs(x * samples.wo_y[i] - y * samples.wo_x[i]) > kTolerance) return std::nullopt;
   }
-  return true;
+  if (x == 0) return kPi / 2;
+  const double azimuth = std::atan(y / x);
+  return std::fabs(azimuth) < kTolerance ? 0.0 : azimuth;
 }
+
+bool IsInPlane(const Samples& samples) { return PlaneAzimuth(samples).has_value(); }
 
 }  // namespace lobefit

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lobefit/measurement/measurement.h"
@@ -21,8 +22,9 @@ struct Incidences {
 // no list of incidences, the polar angles are binned to one degree.
 Incidences GroupByIncidence(const Measurement& measurement, double resolution = 0.1 * kPi / 180);
 
-// True where every sample lies in one plane that contains the normal (to 1e-6 rad): nothing out of plane can be
-// determined.
+// The azimuth in (-pi/2, pi/2] of the plane through the normal that holds every sample (to 1e-6 rad); nothing where
+// there is none. Samples in one plane do not determine what is out of it.
+std::optional<double> PlaneAzimuth(const Samples& samples);
 bool IsInPlane(const Samples& samples);
 
 }  // namespace lobefit
