@@ -68,11 +68,14 @@ std::vector<Tick> LinearTicks(double low, double high, int target) {
   if (!(high > low)) return {{low, TickLabel(low, std::max(std::fabs(low), 1.0) / 100)}};
   const double raw = (high - low) / std::max(1, target);
   const double power = std::pow(10, std::floor(std::log10(raw)));
-  double step = 10 * power;
-  for (const double digit : {5.0, 2.0, 1.0}) {
-    if (digit * power >= raw * (1 - 1e-9)) step = digit * power;
+  // The finest step that makes no more ticks than wanted, or the next finer one where less than three would be left.
+  constexpr std::size_t kLeast = 3;
+  std::vector<Tick> ticks;
+  for (const double digit : {10.0, 5.0, 2.0, 1.0, 0.5}) {
+    if (digit * power < raw * (1 - 1e-9) && ticks.size() >= kLeast) break;
+    ticks = TicksAt(low, high, digit * power);
   }
-  return TicksAt(low, high, step);
+  return ticks;
 }
 
 std::vector<Tick> AngleTicks(double low, double high, int target) {

@@ -18,7 +18,7 @@ struct Range {
   bool logarithmic = false;
 };
 
-// Ticks within the range, at steps of 1, 2 or 5 times a power of ten; about `target` labels.
+// Ticks within the range, at steps of 1, 2 or 5 times a power of ten; about `target` labels, at least 3.
 std::vector<Tick> LinearTicks(double low, double high, int target);
 // Ticks of an axis in degrees: steps of 1, 2, 5, 10, 15, 30, 45 or 90; finer ranges as LinearTicks.
 std::vector<Tick> AngleTicks(double low, double high, int target);

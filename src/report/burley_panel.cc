@@ -140,7 +140,7 @@ std::optional<Panel> BurleyPanel(const ReportData& data) {
                    Join({"φ_d within ", Number(slices->width, 2), "° of 90°;  grey: no sample near"}, "")}};
   panel.height = [](Canvas*, double width) { return 22 + Side(width) + 48 + FieldScale::kHeight; };
   panel.draw = [slices](Canvas* canvas, const Box& content) { Draw(*slices, canvas, content); };
-  panel.fields = {{"half_difference.phi_d_90", slices->image}};
+  panel.fields = {{"half_difference.phi_d_90", "φ_d = 90°", slices->image}};
   return panel;
 }
 

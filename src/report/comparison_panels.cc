@@ -390,8 +390,11 @@ std::optional<Panel> ComparedRatiosPanel(const Compared& compared) {
   panel.title = "Measured / fitted";
   if (ratios->round) {
     std::string which = "all outgoing directions;";
-    for (std::size_t row = 0; row < ratios->rows; ++row)
-      which += "  row " + std::to_string(row + 1) + ": " + ratios->fields[0][row].name;
+    const char* const places[] = {"above", "below"};
+    for (std::size_t row = 0; row < ratios->rows; ++row) {
+      which += (ratios->rows > 1 ? "  " + std::string(places[row]) + ": " : " ") + ratios->fields[0][row].title;
+      if (row + 1 < ratios->rows) which += ";";
+    }
     panel.legend = {{LegendEntry::Mark::kNone, {}, which}};
   }
   panel.height = [ratios](Canvas*, double width) {

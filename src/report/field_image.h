@@ -25,9 +25,9 @@ struct FieldImage {
   std::size_t At(int column, int row) const { return PixelIndex(column, row, width); }
 };
 
-// A field with a name that is fit for a file: "maps.theta_i_30.phi_i_0".
 struct NamedField {
-  std::string name;
+  std::string name;   // fit for a file: "maps.theta_i_30.phi_i_0"
+  std::string title;  // for people, with markup
   std::shared_ptr<const FieldImage> image;
 };
 

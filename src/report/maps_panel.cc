@@ -176,6 +176,14 @@ void DrawDisc(Canvas* canvas, const cv::Mat& picture, const Box& box, const Vec3
   canvas->Line({mirror.x, mirror.y - 4}, {mirror.x, mirror.y + 4}, {mark, 1});
 }
 
+std::string Title(const ReportData& data, const Map& map) {
+  const bool outgoing = data.staying.outgoing;
+  std::string title = (outgoing ? "θ_o = " : "θ_i = ") + Degrees(PolarAngle(map.stays));
+  if (!data.measurement.isotropic && PolarAngle(map.stays) > 1e-3)
+    title += (outgoing ? ",  φ_o = " : ",  φ_i = ") + Degrees(Azimuth(map.stays));
+  return title;
+}
+
 constexpr double kLabel = 26, kHead = 20, kSpace = 12;
 
 double DiscSize(double width, std::size_t count) {
@@ -196,11 +204,7 @@ void Draw(const Maps& maps, Canvas* canvas, const Box& content) {
   for (std::size_t k = 0; k < count; ++k) {
     const Map& map = maps.maps[k];
     const double x = left + static_cast<double>(k) * (size + kSpace);
-    const bool outgoing = maps.data.staying.outgoing;
-    std::string label = (outgoing ? "θ_o = " : "θ_i = ") + Degrees(PolarAngle(map.stays));
-    if (!maps.data.measurement.isotropic && PolarAngle(map.stays) > 1e-3)
-      label += (outgoing ? ",  φ_o = " : ",  φ_i = ") + Degrees(Azimuth(map.stays));
-    canvas->Text({x + size / 2, content.y + 12}, label,
+    canvas->Text({x + size / 2, content.y + 12}, Title(maps.data, map),
                  {.size = style::kBodySize, .color = style::kInk, .align = Align::kCenter, .markup = true});
     const auto place = [&](int row) { return Box{x, content.y + kHead + row * (size + kSpace), size, size}; };
     DrawDisc(canvas, Picture(map.image->measured, kSize, kSize, value), place(0), map.stays, {255, 255, 255});
@@ -236,7 +240,7 @@ std::optional<Panel> MapsPanel(const ReportData& data) {
     const auto degrees = [](double angle) { return std::to_string(std::lround(RadiansToDegrees(angle))); };
     std::string name = Join({"maps.theta_", side, "_", degrees(PolarAngle(map.stays))}, "");
     if (!data.measurement.isotropic) name += Join({".phi_", side, "_", degrees(Azimuth(map.stays))}, "");
-    panel.fields.push_back({name, map.image});
+    panel.fields.push_back({name, Title(data, map), map.image});
   }
   return panel;
 }

@@ -20,6 +20,8 @@ std::vector<std::string> Labels(const std::vector<Tick>& ticks) {
 TEST(LinearTicks, StandAtRoundNumbersWithinTheRange) {
   EXPECT_EQ(Labels(LinearTicks(0, 1, 5)), (std::vector<std::string>{"0.0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
   EXPECT_EQ(Labels(LinearTicks(-0.13, 0.13, 5)), (std::vector<std::string>{"−0.1", "0.0", "0.1"}));
+  EXPECT_EQ(Labels(LinearTicks(-0.0041, 0.0041, 4)),
+            (std::vector<std::string>{"−0.004", "−0.002", "0.000", "0.002", "0.004"}));  // not 0 alone
   EXPECT_EQ(Labels(LinearTicks(0, 3000, 3)), (std::vector<std::string>{"0", "1000", "2000", "3000"}));
   for (const double span : {1e-6, 0.37, 12.0, 8.1e5}) {
     const std::vector<Tick> ticks = LinearTicks(-span / 3, span, 5);
