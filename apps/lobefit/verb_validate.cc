@@ -121,12 +121,14 @@ int RunTrialsOf(const ValidateVerb& verb, const CommonOptions& common) {
     Progress progress("validate", verb.trials);
     trials = RunWithProgress(experiment, verb.trials, common.Threads(), &progress);
   }
-  if (!verb.picture.empty()) DrawCalibration(experiment, trials, Calibrate(experiment, trials), verb.picture);
-  if (!common.json && experiment.noise == Noise{} && IsSameModel(experiment.recipe.model, experiment.truth.model)) {
+  if (experiment.noise == Noise{} && IsSameModel(experiment.recipe.model, experiment.truth.model)) {
     const Recovery recovery = JudgeRecovery(experiment, trials);
-    fmt::print("{}", ToText(recovery, experiment, trials));
-    return recovery.silent == 0 && recovery.trials > 0 ? kExitDone : kExitFit;
+    if (!verb.picture.empty()) DrawRecovery(experiment, trials, recovery, verb.picture);
+    fmt::print("{}", common.json ? ToJson(experiment, recovery, common.command)
+                                 : ToText(recovery, experiment, trials));
+    return recovery.passed() ? kExitDone : kExitFit;
   }
+  if (!verb.picture.empty()) DrawCalibration(experiment, trials, Calibrate(experiment, trials), verb.picture);
   return Report(experiment, trials, common);
 }
 

@@ -28,6 +28,19 @@ Json ToObject(const IntervalCalibration& interval) {
           {"within_95", ToObject(interval.within_95)}};
 }
 
+// What every document begins with.
+Json Head(const Experiment& experiment, bool passed, const std::string& command) {
+  return {{"format", "lobefit validation"},
+          {"format_version", "1.0"},
+          {"version", Version()},
+          {"command", command},
+          {"passed", passed},
+          {"noise", ToText(experiment.noise)},
+          {"seed", experiment.seed},
+          {"recipe", experiment.recipe.name},
+          {"metric", NameOf(MetricChoices(), experiment.recipe.metric)}};
+}
+
 Json Document(const Experiment& experiment, const Calibration& calibration, const std::string& command) {
   Json entries = Json::object();
   for (const EntryCalibration& entry : calibration.entries) {
@@ -42,12 +55,8 @@ Json Document(const Experiment& experiment, const Calibration& calibration, cons
                                  {"independent", ToObject(entry.independent)},
                                  {"clustered", ToObject(entry.clustered)}};
   }
-  return {
-      {"format", "lobefit validation"},
-      {"format_version", "1.0"},
-      {"version", Version()},
-      {"command", command},
-      {"passed", calibration.passed()},
+  Json document = Head(experiment, calibration.passed(), command);
+  document.update(Json{
       {"failures", calibration.failures},
       {"trials",
        {{"planned", calibration.planned},
@@ -61,18 +70,29 @@ Json Document(const Experiment& experiment, const Calibration& calibration, cons
        {{"median", Number(calibration.seconds_median)}, {"percentile_95", Number(calibration.seconds_95)}}},
       {"misfit_flagged", ToObject(calibration.misfit)},
       {"judged", calibration.judge_clustered ? "clustered" : "independent"},
-      {"noise", ToText(experiment.noise)},
-      {"seed", experiment.seed},
-      {"recipe", experiment.recipe.name},
-      {"metric", NameOf(MetricChoices(), experiment.recipe.metric)},
       {"parameters", entries},
-  };
+  });
+  return document;
 }
 
 }  // namespace
 
 std::string ToJson(const Experiment& experiment, const Calibration& calibration, const std::string& command) {
   return Document(experiment, calibration, command).dump(2) + "\n";
+}
+
+std::string ToJson(const Experiment& experiment, const Recovery& recovery, const std::string& command) {
+  Json document = Head(experiment, recovery.passed(), command);
+  Json exceptions = Json::array();
+  for (const Recovery::Exception& exception : recovery.exceptions) {
+    exceptions.push_back({{"trial", exception.trial},
+                          {"difference", Number(exception.difference)},
+                          {"reason", exception.reason}});
+  }
+  document["recovery"] = {{"trials", recovery.trials},   {"limit", recovery.limit},
+                          {"median", Number(recovery.median)}, {"largest", Number(recovery.largest)},
+                          {"without_sign", recovery.silent},   {"exceptions", exceptions}};
+  return document.dump(2) + "\n";
 }
 
 std::string ToJsonLine(const std::string& sweep, const std::string& value, const Experiment& experiment,

@@ -21,6 +21,8 @@ struct Recovery {
   std::vector<Exception> exceptions;
   // Exceptions of which the fit gave no sign: it converged to a residual above rounding and named nothing.
   std::size_t silent = 0;
+
+  bool passed() const { return silent == 0 && trials > 0; }
 };
 
 Recovery JudgeRecovery(const Experiment& experiment, const std::vector<Trial>& trials, double limit = 1e-8);
