@@ -100,15 +100,20 @@ class StreamedCost : public ceres::CostFunction {
     const auto n = static_cast<Eigen::Index>(layout_.size());
     const std::vector<double> u = Clamped(layout_, parameters[0]);
     Eigen::Map<Eigen::VectorXd> r(residuals, n + 1);
+    // Ceres asks for the cost of a step first and, where it takes the step, which is most of the time, for the Jacobian
+    // there. One pass over the samples serves both.
+    if (last_.u != u) {
+      last_.u = u;
+      last_.sum = 2 * Linearise(problem_, layout_, u.data(), pool_, &last_.hessian, &last_.gradient);
+    }
+    const double sum = last_.sum;
     if (jacobians == nullptr || jacobians[0] == nullptr) {
-      const double sum = problem_.Sum(layout_.ToKernel(u.data()), false, pool_).sum_rho;
       r.setZero();
       r(n) = std::sqrt(sum);
       return std::isfinite(sum);
     }
-    Eigen::MatrixXd hessian;
-    Eigen::VectorXd gradient;
-    const double sum = 2 * Linearise(problem_, layout_, u.data(), pool_, &hessian, &gradient);
+    Eigen::MatrixXd hessian = last_.hessian;
+    Eigen::VectorXd gradient = last_.gradient;
     if (!std::isfinite(sum) || !hessian.allFinite() || !gradient.allFinite()) return false;
     std::vector<bool> held(u.size());
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -140,7 +145,15 @@ class StreamedCost : public ceres::CostFunction {
   const Problem& problem_;
   const Layout& layout_;
   ThreadPool* pool_;
-  mutable Secant secant_;  // what the evaluations so far tell; Ceres evaluates one after the other
+  // What the evaluations so far tell; Ceres evaluates one after the other.
+  mutable Secant secant_;
+  struct Evaluation {
+    std::vector<double> u;
+    double sum = 0;
+    Eigen::MatrixXd hessian;
+    Eigen::VectorXd gradient;
+  };
+  mutable Evaluation last_;
 };
 
 // Ceres prints failed evaluations to stderr even with SILENT logging.

@@ -16,9 +16,9 @@ namespace {
 // its standard error is 1e5 times that of its coordinates alone.
 constexpr double kUndetermined = 1e-10;
 
-// Samples x channels x coordinates^2 up to which leverages are computed: about 0.1 s on one thread. Beyond it a sample
-// weighs too little for them to matter.
-constexpr double kMostLeverageWork = 1e8;
+// Operations up to which leverages are computed, samples x (channels x coordinates^2 + what a sample takes anyway):
+// about 0.1 s on one thread. Beyond it a sample weighs too little for them to matter.
+constexpr double kMostLeverageWork = 1e8, kLeverageWorkOfSample = 300;
 
 // The middle of the sandwich in whitened coordinates, in which H is the unit matrix.
 struct Meat {
@@ -221,8 +221,8 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
   // H^-1 = whitening whitening^T, with undetermined directions left out.
   const Eigen::MatrixXd whitening =
       inverse_scale.asDiagonal() * eigen.eigenvectors() * inverse_eigenvalue.cwiseSqrt().asDiagonal();
-  const double work = static_cast<double>(problem.size()) * static_cast<double>(layout.channels()) *
-                      static_cast<double>(m) * static_cast<double>(m);
+  const double work = static_cast<double>(problem.size()) *
+                      (static_cast<double>(layout.channels()) * static_cast<double>(m * m) + kLeverageWorkOfSample);
   const bool with_leverages = work <= kMostLeverageWork;
   Meat meat = with_leverages ? SumWithLeverages(problem, layout, u, active, whitening, incidences, pool)
                              : SumScores(problem, layout, u, active, whitening, incidences, pool);

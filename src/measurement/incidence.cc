@@ -56,16 +56,19 @@ std::optional<double> PlaneAzimuth(const Samples& samples) {
   // The direction farthest from the normal fixes the plane.
   double best = 0, x = 1, y = 0;
   const auto consider = [&](double to_x, double to_y) {
-    const double length = std::hypot(to_x, to_y);
-    if (length <= best) return;
-    best = length;
-    x = to_x / length;
-    y = to_y / length;
+    const double square = to_x * to_x + to_y * to_y;
+    if (square <= best) return;
+    best = square;
+    x = to_x;
+    y = to_y;
   };
   for (std::size_t i = 0; i < samples.size(); ++i) {
     consider(samples.wi_x[i], samples.wi_y[i]);
     consider(samples.wo_x[i], samples.wo_y[i]);
   }
+  const double length = std::hypot(x, y);
+  x /= length;
+  y /= length;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (std::fabs(x * samples.wi_y[i] - y * samples.wi_x[i]) > kTolerance) return std::nullopt;
     if (std::fabs(x * samples.wo_y[i] - y * samples.wo_x[i]) > kTolerance) return std::nullopt;

@@ -77,9 +77,11 @@ void DrawErrors(Canvas* canvas, const Axes& axes, double x, const EntryCalibrati
   }
   if (entry.bias >= y.low && entry.bias <= y.high) return;
   const bool above = entry.bias > y.high;
-  TextStyle number = style::Tick(Align::kCenter);
+  // Beside the band, on the side where there is room.
+  const bool right = axes.MapX(x) < axes.frame().center().x;
+  TextStyle number = style::Tick(right ? Align::kLeft : Align::kRight);
   number.color = style::kBlue;
-  canvas->Text({axes.MapX(x), above ? axes.frame().y + 13 : axes.frame().bottom() - 5},
+  canvas->Text({axes.MapX(x) + (right ? 8 : -8), above ? axes.frame().y + 13 : axes.frame().bottom() - 5},
                fmt::format("{} {:.2g}", above ? "↑" : "↓", entry.bias), number);
 }
 
