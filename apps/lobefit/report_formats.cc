@@ -9,8 +9,10 @@
 
 namespace lobefit {
 
+std::vector<std::string> ReportFormats() { return {"png", "html", "exr"}; }
+
 std::vector<std::string> ParseReportFormats(const std::string& text) {
-  const std::vector<std::string> allowed = {"png", "html", "exr"};
+  const std::vector<std::string> allowed = ReportFormats();
   std::vector<std::string> formats;
   for (const std::string_view field : Split(text, ',')) {
     const std::string format(Trim(field));
@@ -30,14 +32,13 @@ std::string WriteReports(const std::vector<std::string>& formats, const Material
   std::string lines;
   for (const std::string& format : formats) {
     std::filesystem::path path = picture;
-    if (format == "png") {
-      paths.png = path;
-      lines += fmt::format("Picture: {}\n", path.string());
-      continue;
-    }
     path.replace_extension(format);
-    (format == "html" ? paths.html : paths.exr) = path;
-    lines += fmt::format("{} {}\n", format == "html" ? "Page:   " : "Maps:   ", path.string());
+    (format == "png" ? paths.png : format == "html" ? paths.html : paths.exr) = path;
+    lines += fmt::format("{} {}\n",
+                         format == "png"    ? "Picture:"
+                         : format == "html" ? "Page:   "
+                                            : "Maps:   ",
+                         path.string());
   }
   WriteReport(material, measurement, paths, options);
   return lines;

@@ -9,10 +9,13 @@
 
 namespace lobefit {
 
+// Every format; each is the extension of its file too.
+std::vector<std::string> ReportFormats();
+
 // "png,html" as a list. Throws UsageError that lists the formats.
 std::vector<std::string> ParseReportFormats(const std::string& text);
 
-// Writes `picture` (png) and the page of the same name (html). Returns lines for people that name the files.
+// Writes `picture` with the extension of each format. Returns lines for people that name the files.
 std::string WriteReports(const std::vector<std::string>& formats, const Material& material,
                          const Measurement& measurement, const std::filesystem::path& picture,
                          const ReportOptions& options);

@@ -1,4 +1,5 @@
 // lobefit report: draws a fitted material against its measurement again.
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
 #include "lobefit/material/json.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/report/report.h"
@@ -21,6 +23,24 @@ struct ReportVerb {
   double scale = 2;
 };
 
+// The picture's file: --out, a name in the folder --out, or beside the material.
+std::filesystem::path PictureOf(const ReportVerb& verb) {
+  std::string name = std::filesystem::path(verb.material).filename().string();
+  const std::string ending = ".material.json";
+  if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+  name += ".report.png";
+  if (verb.out.empty()) return std::filesystem::path(verb.material).parent_path() / name;
+  const std::filesystem::path out = verb.out;
+  if (std::filesystem::is_directory(out)) return out / name;
+  const std::vector<std::string> formats = ReportFormats();
+  const std::string extension = out.extension().string();
+  if (extension.empty() || std::find(formats.begin(), formats.end(), extension.substr(1)) == formats.end()) {
+    throw UsageError(fmt::format("--out '{}' is neither a folder nor the name of a picture; end it in .{}", verb.out,
+                                 Join(formats, ", .")));
+  }
+  return out;
+}
+
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   const Material material = ReadMaterial(verb.material);
   Measurement measurement = verb.measurement.Load(verb.file);
@@ -28,17 +48,10 @@ int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   Selection limit;
   limit.theta_max = DegreesToRadians(material.theta_max_deg);
   Apply(limit, &measurement);
-  std::filesystem::path picture = verb.out;
-  if (picture.empty()) {
-    std::string name = std::filesystem::path(verb.material).filename().string();
-    const std::string ending = ".material.json";
-    if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
-    picture = std::filesystem::path(verb.material).parent_path() / (name + ".report.png");
-  }
   ReportOptions options;
   options.threads = common.Threads();
   options.scale = verb.scale;
-  fmt::print("{}", WriteReports(ParseReportFormats(verb.format), material, measurement, picture, options));
+  fmt::print("{}", WriteReports(ParseReportFormats(verb.format), material, measurement, PictureOf(verb), options));
   return kExitDone;
 }
 
@@ -48,8 +61,10 @@ std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<ReportVerb>();
   app->add_option("MATERIAL", verb->material, "a *.material.json")->required();
   app->add_option("MEASUREMENT", verb->file, "the measurement file that it was fitted to")->required();
-  app->add_option("--out", verb->out, "the picture (default: NAME.report.png beside the material)");
-  app->add_option("--format", verb->format, "png (default), html, exr (the maps behind the pictures), or several with commas between");
+  app->add_option("--out", verb->out,
+                  "the picture, or the folder for it (default: NAME.report.png beside the material)");
+  app->add_option("--format", verb->format,
+                  "png (default), html, exr (the maps behind the pictures), or several with commas between");
   app->add_option("--scale", verb->scale, "pixels to one unit of the page, which is 1320 units wide (default 2)")
       ->check(CLI::Range(0.25, 4.0));
   verb->measurement.AddTo(app);

@@ -124,8 +124,7 @@ int RunTrialsOf(const ValidateVerb& verb, const CommonOptions& common) {
   if (experiment.noise == Noise{} && IsSameModel(experiment.recipe.model, experiment.truth.model)) {
     const Recovery recovery = JudgeRecovery(experiment, trials);
     if (!verb.picture.empty()) DrawRecovery(experiment, trials, recovery, verb.picture);
-    fmt::print("{}", common.json ? ToJson(experiment, recovery, common.command)
-                                 : ToText(recovery, experiment, trials));
+    fmt::print("{}", common.json ? ToJson(experiment, recovery, common.command) : ToText(recovery, experiment, trials));
     return recovery.passed() ? kExitDone : kExitFit;
   }
   if (!verb.picture.empty()) DrawCalibration(experiment, trials, Calibrate(experiment, trials), verb.picture);

@@ -245,8 +245,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         100 * std::max(0.0, explained)));
   }
   material.termination = {best.converged, uncertainty.determined && !has_rival && !(explained < kLeastExplained),
-                          best.message,
-                          best.iterations};
+                          best.message, best.iterations};
   material.source = {measurement->source, measurement->sha256, measurement->format, measurement->conventions};
   material.recipe_name = recipe.name;
   material.recipe_reason = recipe.reason;

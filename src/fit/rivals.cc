@@ -74,8 +74,8 @@ std::string Differences(const Layout& layout, const std::vector<double>& u, Mate
                                 fitted.values[0] / InsideFactor(parameters[i])));
   }
   for (const std::size_t i : differing) {
-    material->parameters[i].standard_error = material->parameters[i].standard_error_clustered = {
-        std::numeric_limits<double>::quiet_NaN()};
+    material->parameters[i].standard_error =
+        material->parameters[i].standard_error_clustered = {std::numeric_limits<double>::quiet_NaN()};
   }
   return fmt::format("{}", fmt::join(words, ", "));
 }

@@ -69,13 +69,13 @@ class Intervals {
     const bool bounds = options.alta_interval ? *options.alta_interval == IntervalKind::kBounds : !not_bounds_;
     const std::optional<std::size_t> wrong = bounds ? not_bounds_ : not_offsets_;
     if (wrong) {
-      places.Fail(*wrong, !has_pairs_
-                              ? "the half-width of a confidence interval is negative or not a number; it must be 0 or more"
-                          : bounds
-                              ? "the value does not lie between the two columns of its interval; --alta-interval offsets "
-                                "reads them as distances from the value"
-                              : "a half-width of the confidence interval is negative or not a number, and the value does "
-                                "not lie between its two columns either");
+      places.Fail(*wrong,
+                  !has_pairs_
+                      ? "the half-width of a confidence interval is negative or not a number; it must be 0 or more"
+                  : bounds ? "the value does not lie between the two columns of its interval; --alta-interval offsets "
+                             "reads them as distances from the value"
+                           : "a half-width of the confidence interval is negative or not a number, and the value does "
+                             "not lie between its two columns either");
     }
     std::vector<double>& variance = bounds ? bounds_ : offsets_;
     double smallest = std::numeric_limits<double>::infinity();

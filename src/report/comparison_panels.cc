@@ -299,8 +299,8 @@ void DrawRatios(const Compared& compared, const Ratios& ratios, Canvas* canvas, 
       }
     }
   }
-  scale.Draw(canvas, left, left + std::max(720.0, static_cast<double>(count) * (side + kFieldGap) - kFieldGap),
-             content.y + kFieldHead + static_cast<double>(ratios.rows) * FieldRow(ratios, side));
+  scale.DrawRatios(canvas, left, left + std::max(400.0, static_cast<double>(count) * (side + kFieldGap) - kFieldGap),
+                   content.y + kFieldHead + static_cast<double>(ratios.rows) * FieldRow(ratios, side));
 }
 
 // --- spheres

@@ -14,7 +14,7 @@ namespace lobefit {
 namespace {
 
 constexpr int kCells = CoverageDisc::kCells;
-constexpr double kWidth = 780, kHeight = 376, kMargin = 20, kGap = 24, kTop = 92, kScaleRoom = 46;
+constexpr double kWidth = 780, kHeight = 394, kMargin = 20, kGap = 24, kTop = 92, kScaleRoom = 46;
 // Up to this many cells are drawn as dots, which a reader sees even where they stand alone.
 constexpr std::size_t kMostDots = 500;
 
@@ -35,7 +35,7 @@ std::size_t CellOf(const Vec3& w) {
   return PixelIndex(cell(at.x), cell(-at.y), kCells);
 }
 
-void DrawDisc(const CoverageDisc& disc, const Range& range, Canvas* canvas, const Box& box) {
+void DrawDisc(const CoverageDisc& disc, const Range& range, Canvas* canvas, const Box& box, bool names_rings) {
   const Point center = box.center();
   const double radius = box.width / 2;
   canvas->Disc(center, radius, style::kShade);
@@ -60,9 +60,15 @@ void DrawDisc(const CoverageDisc& disc, const Range& range, Canvas* canvas, cons
     }
   }
   canvas->Ring(center, radius, {style::kSecondary, 1});
-  const TextStyle note = {.size = style::kNoteSize, .color = style::kSecondary, .baseline = Baseline::kTop};
-  canvas->Text({center.x + radius * 30 / 90 + 2, center.y + 2}, "30°", note);
-  canvas->Text({center.x + radius * 60 / 90 + 2, center.y + 2}, "60°", note);
+  // Between the axes, where one plane of directions does not cover them.
+  const TextStyle note = {.size = style::kNoteSize, .color = style::kSecondary};
+  const double diagonal = std::sqrt(0.5);
+  if (names_rings) {
+    for (const double theta : {30.0, 60.0}) {
+      const double along = radius * theta / 90 * diagonal + 2;
+      canvas->Text({center.x + along, center.y - along}, std::to_string(std::lround(theta)) + "°", note);
+    }
+  }
   TextStyle title = style::Body(style::kInk, Align::kCenter);
   title.weight = Weight::kBold;
   title.markup = true;
@@ -106,7 +112,7 @@ void WriteCoveragePng(const Measurement& measurement, const std::filesystem::pat
   if (measurement.isotropic) words += "  ·  isotropic: turned so that the light is at azimuth 0";
   canvas.Text({kMargin, kMargin + 34}, words, style::Note());
   for (std::size_t k = 0; k < discs.size(); ++k)
-    DrawDisc(discs[k], range, &canvas, {kMargin + static_cast<double>(k) * (side + kGap), kTop, side, side});
+    DrawDisc(discs[k], range, &canvas, {kMargin + static_cast<double>(k) * (side + kGap), kTop, side, side}, k == 0);
   DrawColorScale(&canvas, {kMargin + 4, kHeight - kScaleRoom + 2, 220, 9}, CountColor, range,
                  LogTicks(range.low, range.high, 5), "samples a cell");
   canvas.Text({kWidth - kMargin, kHeight - kScaleRoom + 11},

@@ -77,10 +77,20 @@ Rgb FieldScale::RatioColor(float log_ratio) const {
   return DivergingColor(0.5 + static_cast<double>(log_ratio) / (2 * std::log(ratio_)));
 }
 
+namespace {
+
+double ScaleWidth(double left, double right) { return std::min(300.0, (right - left - 80) / 2); }
+
+}  // namespace
+
 void FieldScale::Draw(Canvas* canvas, double left, double right, double y) const {
-  const double width = std::min(300.0, (right - left - 80) / 2), inner = std::sqrt(ratio_);
-  DrawColorScale(canvas, {left + 14, y + 14, width, 9}, SequentialColor, values_,
+  DrawColorScale(canvas, {left + 14, y + 14, ScaleWidth(left, right), 9}, SequentialColor, values_,
                  LogTicks(values_.low, values_.high, 5), "f_r  (1/sr)");
+  DrawRatios(canvas, left, right, y);
+}
+
+void FieldScale::DrawRatios(Canvas* canvas, double left, double right, double y) const {
+  const double width = ScaleWidth(left, right), inner = std::sqrt(ratio_);
   const std::vector<Tick> ticks = {
       {1 / ratio_, RatioText(1 / ratio_)}, {1 / inner, ""}, {1, "1"}, {inner, ""}, {ratio_, RatioText(ratio_)}};
   DrawColorScale(canvas, {right - width - 18, y + 14, width, 9}, DivergingColor, {1 / ratio_, ratio_, true}, ticks,

@@ -46,6 +46,8 @@ class FieldScale {
   Rgb RatioColor(float log_ratio) const;
   // Both scales side by side below y, between left and right.
   void Draw(Canvas* canvas, double left, double right, double y) const;
+  // The ratios' scale alone.
+  void DrawRatios(Canvas* canvas, double left, double right, double y) const;
   static constexpr double kHeight = 46;
 
  private:

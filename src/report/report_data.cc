@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"
@@ -15,12 +17,17 @@ namespace lobefit {
 namespace {
 
 const Material& Checked(const Material& material, const Measurement& measurement) {
-  if (measurement.samples.size() == 0)
-    throw InputError(measurement.source + ": no sample to draw; check the selection and the angle limit");
   if (material.channels != measurement.channels.names) {
     throw InputError(measurement.source + ": the measurement has the channels " + Join(measurement.channels.names) +
                      ", the material has " + Join(material.channels) +
                      "; give the measurement that the material was fitted to");
+  }
+  // One sample lies on any curve.
+  if (measurement.samples.size() < 2) {
+    throw InputError(
+        fmt::format("{}: {} within the angle limit; a report needs two or more: check the selection and "
+                    "--theta-max of the fit",
+                    measurement.source, measurement.samples.size() == 0 ? "no sample" : "only one sample"));
   }
   return material;
 }

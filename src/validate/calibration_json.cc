@@ -85,11 +85,10 @@ std::string ToJson(const Experiment& experiment, const Recovery& recovery, const
   Json document = Head(experiment, recovery.passed(), command);
   Json exceptions = Json::array();
   for (const Recovery::Exception& exception : recovery.exceptions) {
-    exceptions.push_back({{"trial", exception.trial},
-                          {"difference", Number(exception.difference)},
-                          {"reason", exception.reason}});
+    exceptions.push_back(
+        {{"trial", exception.trial}, {"difference", Number(exception.difference)}, {"reason", exception.reason}});
   }
-  document["recovery"] = {{"trials", recovery.trials},   {"limit", recovery.limit},
+  document["recovery"] = {{"trials", recovery.trials},         {"limit", recovery.limit},
                           {"median", Number(recovery.median)}, {"largest", Number(recovery.largest)},
                           {"without_sign", recovery.silent},   {"exceptions", exceptions}};
   return document.dump(2) + "\n";

@@ -89,8 +89,7 @@ void DrawCalibration(const Experiment& experiment, const std::vector<Trial>& tri
   for (const Trial& trial : trials) {
     if (!IsFitted(trial)) continue;
     for (std::size_t e = 0; e < entries.size(); ++e) {
-      const double sigma =
-          calibration.judge_clustered ? trial.standard_error_clustered[e] : trial.standard_error[e];
+      const double sigma = calibration.judge_clustered ? trial.standard_error_clustered[e] : trial.standard_error[e];
       if (!trial.free[e] || std::isnan(trial.truth[e]) || !(sigma > 0)) continue;
       z[e].push_back((trial.value[e] - trial.truth[e]) / sigma);
       all.push_back(z[e].back());

@@ -252,8 +252,9 @@ std::vector<Sweep> Sweeps() {
          return Sample{value, SelLobeFormula<long double>(e.alpha_x, e.alpha_y, Long(v)), std::fmax(1, sum / value)};
        }});
   sweeps.push_back(
-      {"SlopeDistributionD", "Beckmann and GGX, alphas 1e-3 to 3, correlation to 0.99, slopes within 3 alphas of the mean",
-       200000, [](std::mt19937_64* random) {
+      {"SlopeDistributionD",
+       "Beckmann and GGX, alphas 1e-3 to 3, correlation to 0.99, slopes within 3 alphas of the mean", 200000,
+       [](std::mt19937_64* random) {
          std::normal_distribution<double> gauss;
          SlopeDistribution s;
          s.kind = Uniform(random, 0, 1) < 0.5 ? SlopeKind::kBeckmann : SlopeKind::kGgx;

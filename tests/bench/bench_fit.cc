@@ -250,8 +250,8 @@ void Growth(const std::vector<std::size_t>& counts) {
     };
     const auto nanoseconds = [&](double time) { return 1e9 * time / static_cast<double>(count); };
     fmt::print("| {} | {:.3f} | {:.0f} | {:.2f} | {:.3f} | {:.1f} | {:.2f} | {:.0f} |\n", count, seconds,
-               nanoseconds(seconds), exponent(seconds, last), 1e3 * pass, nanoseconds(pass),
-               exponent(pass, last_pass), memory);
+               nanoseconds(seconds), exponent(seconds, last), 1e3 * pass, nanoseconds(pass), exponent(pass, last_pass),
+               memory);
     std::fflush(stdout);
     last_pass = pass;
     last = seconds;

@@ -1,6 +1,6 @@
 // Fits of each MERL table: the error under every metric, and whether the default fit finds the best minimum, its cost
 // against the best of many random starts, in one table in Markdown.
-//   bench_starts METRIC WEIGHTING LOBES RANDOM_STARTS FILE.binary...
+//   bench_starts RECIPE.toml METRIC WEIGHTING RANDOM_STARTS FILE.binary...
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -17,6 +17,7 @@
 #include "lobefit/fit/solve.h"
 #include "lobefit/fit/starts.h"
 #include "lobefit/io/read.h"
+#include "lobefit/recipe/recipe.h"
 
 namespace lobefit {
 namespace {
@@ -98,16 +99,13 @@ void Run(const Recipe& recipe, int count, const std::vector<std::string>& files)
 
 int main(int argc, char** argv) {
   using namespace lobefit;
-  const Choice<Metric>* metric = argc > 5 ? Find(MetricChoices(), argv[1]) : nullptr;
-  const Choice<Weighting>* weighting = argc > 5 ? Find(WeightingChoices(), argv[2]) : nullptr;
-  const std::size_t lobes = argc > 5 ? std::strtoul(argv[3], nullptr, 10) : 0;
-  if (metric == nullptr || weighting == nullptr || lobes < 1 || lobes > 3) {
-    std::fprintf(stderr, "usage: bench_starts METRIC WEIGHTING LOBES RANDOM_STARTS FILE.binary...\n");
+  const Choice<Metric>* metric = argc > 5 ? Find(MetricChoices(), argv[2]) : nullptr;
+  const Choice<Weighting>* weighting = argc > 5 ? Find(WeightingChoices(), argv[3]) : nullptr;
+  if (metric == nullptr || weighting == nullptr) {
+    std::fprintf(stderr, "usage: bench_starts RECIPE.toml METRIC WEIGHTING RANDOM_STARTS FILE.binary...\n");
     return 2;
   }
-  Recipe recipe = DefaultRecipe({std::vector<Lobe>(lobes, Lobe{Ndf::kGgx}), Diffuse::kLambert}, "study");
-  // As in fits/ggx-two-lobes.toml: only the first lobe has Schlick's edge, so that one lobe is among two.
-  for (std::size_t l = 1; l < lobes; ++l) recipe.model.lobes[l].fresnel = Fresnel::kNone;
+  Recipe recipe = ReadRecipe(argv[1]);
   recipe.metric = metric->value;
   recipe.weighting = weighting->value;
   Run(recipe, std::atoi(argv[4]), {argv + 5, argv + argc});

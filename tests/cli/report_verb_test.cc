@@ -50,15 +50,36 @@ TEST_F(ReportVerb, RefusesOtherWavelengths) {
   EXPECT_THAT(result.err, HasSubstr("channels 450nm, 650nm, the material has 450nm, 550nm"));
 }
 
-// A single sample can be drawn: figures that need more are left out. Maps cannot, and that is said.
-TEST_F(ReportVerb, OneSample) {
+TEST_F(ReportVerb, RefusesOneSample) {
   FitOne();
   WriteWholeFile(folder_ / "one.csv", "theta_i,phi_i,theta_o,phi_o,R,G,B\n10,0,20,180,0.5,0.4,0.3\n");
-  const ProgramResult result = Shell("lobefit report fitted.material.json one.csv --format png,html --out one.png");
-  EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 3) << result.err;
-  const ProgramResult maps = Shell("lobefit report fitted.material.json one.csv --format exr --out one.png");
+  const ProgramResult result = Shell("lobefit report fitted.material.json one.csv --out one.png");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("one.csv: only one sample within the angle limit"));
+  EXPECT_THAT(Files(), testing::ElementsAre("fitted.material.json", "one.csv"));
+}
+
+// Two samples of one plane: figures that need more are left out. Maps cannot be drawn, and that is said.
+TEST_F(ReportVerb, DrawsTwoSamplesButNoMaps) {
+  FitOne();
+  WriteWholeFile(folder_ / "two.csv",
+                 "theta_i,phi_i,theta_o,phi_o,R,G,B\n10,0,20,180,0.5,0.4,0.3\n10,0,25,180,0.5,0.4,0.3\n");
+  EXPECT_EQ(Shell("lobefit report fitted.material.json two.csv --format png,html --out two.png").exit_code, 0);
+  EXPECT_THAT(Files(), testing::IsSupersetOf({"two.png", "two.html"}));
+  const ProgramResult maps = Shell("lobefit report fitted.material.json two.csv --format exr --out two.png");
   EXPECT_EQ(maps.exit_code, 3);
   EXPECT_THAT(maps.err, HasSubstr("fills no map"));
+}
+
+TEST_F(ReportVerb, OutIsAPictureOrAFolder) {
+  FitOne();
+  WriteWholeFile(folder_ / "notes", "of the user");
+  const std::string report = "lobefit report fitted.material.json $SOURCE/samples/satin_plastic.csv --scale 0.5 --out ";
+  EXPECT_EQ(Shell(report + "notes").exit_code, 2);
+  EXPECT_EQ(ReadWholeFile(folder_ / "notes"), "of the user");
+  const ProgramResult folder = Shell("mkdir pictures && " + report + "pictures");
+  EXPECT_EQ(folder.exit_code, 0) << folder.err;
+  EXPECT_THAT(folder.out, HasSubstr("Picture: pictures/fitted.report.png"));
 }
 
 TEST_F(ReportVerb, AFolderThatCannotBeWritten) {

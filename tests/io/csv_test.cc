@@ -143,17 +143,18 @@ TEST(Csv, WavelengthsAsColumnsAndAsRows) {
 }
 
 TEST(Csv, RowsOfAWavelengthKeepTheirUncertainties) {
-  const Measurement m = Read(
-      "lambda,theta_i,theta_o,f,sigma\n550,10,20,2,0.3\n450,10,20,1,0.4\n550,10,30,2,3\n450,10,30,1,4\n");
-  const Measurement same = Read("theta_i,theta_o,450nm,550nm,sigma\n10,20,1,2,0.3535533905932738\n"
-                                "10,30,1,2,3.5355339059327378\n");
+  const Measurement m =
+      Read("lambda,theta_i,theta_o,f,sigma\n550,10,20,2,0.3\n450,10,20,1,0.4\n550,10,30,2,3\n450,10,30,1,4\n");
+  const Measurement same = Read(
+      "theta_i,theta_o,450nm,550nm,sigma\n10,20,1,2,0.3535533905932738\n"
+      "10,30,1,2,3.5355339059327378\n");
   ASSERT_EQ(m.samples.weight.size(), 2U);
   ASSERT_EQ(same.samples.weight.size(), 2U);
   EXPECT_GT(m.samples.weight[0], 1.5 * m.samples.weight[1]);
   for (const std::size_t i : {0, 1}) EXPECT_NEAR(m.samples.weight[i], same.samples.weight[i], 1e-14);
 
-  const Measurement weighted =
-      Read("lambda,theta_i,theta_o,f,weight\n550,10,20,2,1\n450,10,20,1,3\n550,10,30,2,6\n450,10,30,1,6\n450,9,9,1,0\n");
+  const Measurement weighted = Read(
+      "lambda,theta_i,theta_o,f,weight\n550,10,20,2,1\n450,10,20,1,3\n550,10,30,2,6\n450,10,30,1,6\n450,9,9,1,0\n");
   ASSERT_EQ(weighted.samples.weight.size(), 2U);
   EXPECT_NEAR(weighted.samples.weight[1] / weighted.samples.weight[0], 3, 1e-15);
   EXPECT_EQ(weighted.set_aside[SetAsideReason::kFlagged], 1U);

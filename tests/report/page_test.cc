@@ -54,10 +54,19 @@ TEST(Page, AnAnisotropicMeasurementHasMapsButNoIsotropicPictures) {
   EXPECT_THAT(ids, Not(Contains("burley")));
 }
 
-TEST(Page, OneSampleLeavesTheNumbers) {
+TEST(Page, OneSampleIsRefused) {
   const Material material = test::MakeMaterial(1, true);
   const Measurement measurement =
       test::Measure(material, {{test::AtDegrees(30, 0), test::AtDegrees(30, 180)}}, 0, false);
+  EXPECT_THROW(IdsOf(material, measurement), InputError);
+}
+
+TEST(Page, TwoSamplesLeaveTheNumbers) {
+  const Material material = test::MakeMaterial(1, true);
+  const Measurement measurement = test::Measure(
+      material,
+      {{test::AtDegrees(30, 0), test::AtDegrees(30, 180)}, {test::AtDegrees(30, 0), test::AtDegrees(35, 180)}}, 0,
+      false);
   const std::vector<std::string> ids = IdsOf(material, measurement);
   EXPECT_THAT(ids, Not(Contains("curves")));
   EXPECT_THAT(ids, Not(Contains("residuals")));
