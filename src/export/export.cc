@@ -190,9 +190,14 @@ std::string ExportSummary(const std::vector<ExportResult>& results) {
   for (const ExportResult& result : results) {
     text += fmt::format("{}:\n{}", result.target->name, CarriedLines(result.carries));
     if (result.other) {
-      text += fmt::format("  numbers {} because that is nearer: the {} ones have median {:.2g} %, albedo {:.2g} %\n",
-                          result.numbers, result.numbers == "copied" ? "refitted" : "copied",
-                          100 * result.other->median, 100 * result.other->albedo);
+      const auto words = [](const ExportError& error) {
+        return fmt::format("median {:.2g} %, 90 % within {:.2g} %, albedo {:.2g} %", 100 * error.median,
+                           100 * error.percentile_90, 100 * error.albedo);
+      };
+      text += fmt::format("  numbers {}{}; the {} ones have {}\n", result.numbers,
+                          IsBetter(result.error, *result.other) ? ", which is nearer by median and 90 % together"
+                                                                : " as asked, though not nearer",
+                          result.numbers == "copied" ? "refitted" : "copied", words(*result.other));
     }
     for (const std::string& note : result.notes) text += fmt::format("  {}\n", note);
   }
