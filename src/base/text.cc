@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "lobefit/base/plain_decimal.h"
+
 namespace lobefit {
 namespace {
 
@@ -76,33 +78,6 @@ std::vector<std::string_view> SplitBlanks(std::string_view text) {
     if (at > begin) pieces.push_back(text.substr(begin, at - begin));
   }
   return pieces;
-}
-
-std::optional<double> ParsePlainDecimal(std::string_view text, std::size_t* length) {
-  // A whole number below 2^53 and a power of ten up to 10^22 are doubles, so that one division rounds once.
-  constexpr std::size_t kMostDigits = 15;
-  static constexpr std::array<double, kMostDigits + 1> kPowers = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                                                  1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
-  std::size_t at = 0;
-  const bool negative = !text.empty() && text[0] == '-';
-  if (negative) ++at;
-  const std::size_t first = at;
-  std::int64_t digits = 0;
-  while (at < text.size() && IsDigit(text[at]) && at - first <= kMostDigits) digits = 10 * digits + (text[at++] - '0');
-  std::size_t count = at - first, decimals = 0;
-  if (count == 0) return std::nullopt;
-  if (at < text.size() && text[at] == '.') {
-    const std::size_t point = at++;
-    while (at < text.size() && IsDigit(text[at]) && at - point + count <= kMostDigits + 1)
-      digits = 10 * digits + (text[at++] - '0');
-    decimals = at - point - 1;
-    count += decimals;
-    if (decimals == 0) return std::nullopt;
-  }
-  if (count > kMostDigits) return std::nullopt;
-  *length = at;
-  const double value = static_cast<double>(digits) / kPowers[decimals];
-  return negative ? -value : value;
 }
 
 std::optional<double> ParseDouble(std::string_view field) {

@@ -23,11 +23,6 @@ std::vector<std::string_view> SplitBlanks(std::string_view text);
 // The number that fills `field` exactly (blanks at both ends allowed, one leading '+' allowed, "nan" and "inf" in any
 // case allowed), else nothing. "0,5", "1.0x", "" and "0x10" give nothing. 1e-400 gives 0 and 1e400 gives infinity.
 std::optional<double> ParseDouble(std::string_view field);
-
-// The number with which `text` begins, where it is written plainly ("-12.25": digits, perhaps a point and digits) and
-// short enough that double arithmetic gives the very value of ParseDouble; its length goes to `length`. Else nothing:
-// then ParseDouble decides. Three times as fast.
-std::optional<double> ParsePlainDecimal(std::string_view text, std::size_t* length);
 std::optional<long long> ParseInteger(std::string_view field);
 
 // `name` and a suggestion from `allowed` that is at most two edits away: " (did you mean 'x'?)", else "".

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "lobefit/base/plain_decimal.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv_header.h"
 #include "lobefit/io/csv_layout.h"

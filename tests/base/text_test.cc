@@ -1,3 +1,4 @@
+#include "lobefit/base/plain_decimal.h"
 #include "lobefit/base/text.h"
 
 #include <bit>
@@ -39,6 +40,13 @@ TEST(ParseDouble, PlainDecimalsAreExact) {
       EXPECT_EQ(std::bit_cast<std::uint64_t>(*plain), std::bit_cast<std::uint64_t>(expected)) << text;
     }
     EXPECT_EQ(ParseDouble(text), expected) << text;
+    // Within a line: what follows is not part of it.
+    std::size_t within = 0;
+    const std::optional<double> first = ParsePlainDecimal(text + (i % 2 == 0 ? ",271828.18" : "/31415926"), &within);
+    EXPECT_EQ(first, plain) << text;
+    if (plain) {
+      EXPECT_EQ(within, length) << text;
+    }
   }
   EXPECT_GT(quick, 60000U);
   std::size_t length = 0;

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "lobefit/base/file.h"
@@ -38,15 +39,15 @@ Time LeastTime(const std::filesystem::path& path, int passes) {
 void WriteRows(std::size_t rows, const std::filesystem::path& path) {
   std::mt19937 random(1);
   std::string text = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,R,G,B\n";
-  const auto number = [&](double low, double high, double step) {
-    const double steps = (high - low) / step;
-    return FormatDouble(low + step * static_cast<double>(random() % static_cast<unsigned>(steps)));
+  // Fixed decimals, as instruments write.
+  const auto number = [&](unsigned below, int decimals) {
+    const unsigned unit = decimals == 3 ? 1000 : 100000, value = random() % (below * unit);
+    return fmt::format("{}.{:0{}}", value / unit, value % unit, decimals);
   };
   for (std::size_t i = 0; i < rows; ++i) {
     // A light stays for many rows, as in a scan.
-    text += std::to_string(5 * (i / 10000 % 16)) + "," + std::to_string(30 * (i / 160000)) + "," + number(0, 85, 1e-3) +
-            "," + number(0, 360, 1e-3) + "," + number(0, 1, 1e-5) + "," + number(0, 1, 1e-5) + "," +
-            number(0, 1, 1e-5) + "\n";
+    text += std::to_string(5 * (i / 10000 % 16)) + "," + std::to_string(30 * (i / 160000)) + "," + number(85, 3) + "," +
+            number(360, 3) + "," + number(1, 5) + "," + number(1, 5) + "," + number(1, 5) + "\n";
   }
   WriteFileAtomically(path, text);
 }
