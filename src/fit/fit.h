@@ -28,7 +28,7 @@ MeasurementTraits TraitsOf(const Measurement& measurement);
 // does not depend on the number of threads. Throws InputError where there is nothing to fit: no sample left, fewer
 // values than free parameters. A fit that did not converge or is not determined is returned, and says so in
 // Material::termination.
-Material Fit(const Recipe& recipe, const FitOptions& options, Measurement* measurement);
+Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measurement);
 
 // What an automatic choice turns to where its first result shows that it was wrong: an in-plane measurement does not
 // see the lobe's width across the plane, which scales the values as f0 does; where f0 ends at 1 they become one free

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "lobefit/base/parallel.h"
+#include "lobefit/base/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/report/axes.h"
 #include "lobefit/report/color.h"
@@ -72,10 +73,12 @@ void DrawErrors(const Compared& compared, Canvas* canvas, const Box& content) {
     TextStyle name = style::Body();
     name.weight = Weight::kBold;
     canvas->Text({content.x + 28, y + 15}, canvas->Shorten(entry.label, name, name_width - 40), name);
-    std::string words = ModelWords(material.model);
-    if (!material.termination.converged) words = "not converged  ·  " + words;
-    if (!entry.note.empty()) words = entry.note + "  ·  " + words;
-    canvas->Text({content.x + 28, y + 31}, canvas->Shorten(words, style::Note(), name_width - 40), style::Note());
+    std::vector<std::string> words;
+    if (!entry.note.empty()) words.push_back(entry.note);
+    if (!material.termination.converged) words.emplace_back("not converged");
+    words.push_back(ModelWords(material.model));
+    canvas->Text({content.x + 28, y + 31}, canvas->Shorten(Join(words, "  ·  "), style::Note(), name_width - 40),
+                 style::Note());
     canvas->Text({content.x + name_width + free_width, y + 15}, std::to_string(FreeValues(material)),
                  style::Body(style::kInk, Align::kRight));
     for (std::size_t k = 0; k < metrics.size(); ++k) {

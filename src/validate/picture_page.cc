@@ -12,10 +12,13 @@ namespace {
 constexpr double kWidth = 900, kMargin = 16, kCellHeight = 190, kScale = 1.1;
 constexpr int kColumns = 3;
 
+// Distance of a row's upper edge from the first row's.
+double RowTop(int row) { return kCellHeight * row; }
+
 }  // namespace
 
 PicturePage::PicturePage(std::size_t cells)
-    : canvas_(kWidth, 44 + kCellHeight * static_cast<double>((cells + kColumns - 1) / kColumns), kScale,
+    : canvas_(kWidth, 44 + RowTop((static_cast<int>(cells) + kColumns - 1) / kColumns), kScale,
               std::make_shared<Fonts>()) {
   canvas_.Fill({0, 0, canvas_.width(), canvas_.height()}, {255, 255, 255});
 }
@@ -26,8 +29,7 @@ void PicturePage::Head(const std::string& text) {
 
 Box PicturePage::Next(const std::string& title, int columns) {
   const double cell = (kWidth - kMargin) / kColumns;
-  const Box box = {kMargin + cell * static_cast<double>(next_ % kColumns),
-                   40 + kCellHeight * static_cast<double>(next_ / kColumns), cell * columns, kCellHeight};
+  const Box box = {kMargin + cell * (next_ % kColumns), 40 + RowTop(next_ / kColumns), cell * columns, kCellHeight};
   next_ += columns;
   canvas_.Text({box.x + 44, box.y + 14}, title,
                {.size = style::kPanelTitleSize, .color = style::kInk, .weight = Weight::kBold});

@@ -143,11 +143,7 @@ class Rates : public benchmark::ConsoleReporter {
   std::map<std::string, double> rate;
 };
 
-}  // namespace
-}  // namespace lobefit
-
-int main(int argc, char** argv) {
-  using namespace lobefit;
+int Main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RegisterBenchmark("scalar value", [](auto& state) { Scalar(state, false); });
@@ -163,4 +159,10 @@ int main(int argc, char** argv) {
     std::printf("%-24s %14.1f %10.1f %18.1f\n", name.c_str(), rate * 1e-6, rate / rates.rate["Jets"],
                 rate / rates.rate["Jets, definition"]);
   }
+  return 0;
 }
+
+}  // namespace
+}  // namespace lobefit
+
+int main(int argc, char** argv) { return lobefit::Main(argc, argv); }

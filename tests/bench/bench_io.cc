@@ -52,11 +52,7 @@ void WriteRows(std::size_t rows, const std::filesystem::path& path) {
   WriteFileAtomically(path, text);
 }
 
-}  // namespace
-}  // namespace lobefit
-
-int main(int argc, char** argv) {
-  using namespace lobefit;
+int Main(int argc, char** argv) {
   const std::size_t rows = argc > 1 ? static_cast<std::size_t>(ParseInteger(argv[1]).value_or(1000000)) : 1000000;
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("lobefit_bench_io_" + std::to_string(getpid()));
@@ -71,3 +67,8 @@ int main(int argc, char** argv) {
   std::filesystem::remove(path);
   return 0;
 }
+
+}  // namespace
+}  // namespace lobefit
+
+int main(int argc, char** argv) { return lobefit::Main(argc, argv); }

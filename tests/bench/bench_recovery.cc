@@ -90,11 +90,7 @@ void Run(int trials, double step_deg, Metric metric) {
   fmt::print("{} of {} to 1e-6, {} to 1e-8; {} wrong but reported as converged\n", within_6, trials, within_8, wrong);
 }
 
-}  // namespace
-}  // namespace lobefit
-
-int main(int argc, char** argv) {
-  using namespace lobefit;
+int Main(int argc, char** argv) {
   const Choice<Metric>* metric = Find(MetricChoices(), argc > 3 ? argv[3] : "cube-root");
   if (argc < 3 || metric == nullptr) {
     std::fprintf(stderr, "usage: bench_recovery TRIALS DETECTOR_STEP_DEG [METRIC]\n");
@@ -103,3 +99,8 @@ int main(int argc, char** argv) {
   Run(std::atoi(argv[1]), std::atof(argv[2]), metric->value);
   return 0;
 }
+
+}  // namespace
+}  // namespace lobefit
+
+int main(int argc, char** argv) { return lobefit::Main(argc, argv); }

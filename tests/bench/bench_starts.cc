@@ -94,11 +94,7 @@ void Run(const Recipe& recipe, int count, const std::vector<std::string>& files)
   fmt::print("\n{} of {} within 0.1 %\n", reached, files.size());
 }
 
-}  // namespace
-}  // namespace lobefit
-
-int main(int argc, char** argv) {
-  using namespace lobefit;
+int Main(int argc, char** argv) {
   const Choice<Metric>* metric = argc > 5 ? Find(MetricChoices(), argv[2]) : nullptr;
   const Choice<Weighting>* weighting = argc > 5 ? Find(WeightingChoices(), argv[3]) : nullptr;
   if (metric == nullptr || weighting == nullptr) {
@@ -111,3 +107,8 @@ int main(int argc, char** argv) {
   Run(recipe, std::atoi(argv[4]), {argv + 5, argv + argc});
   return 0;
 }
+
+}  // namespace
+}  // namespace lobefit
+
+int main(int argc, char** argv) { return lobefit::Main(argc, argv); }
