@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "lobefit/core/off_center.h"
+#include "lobefit/fit/symmetric_eigen.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/math/student_t.h"
 
@@ -158,9 +158,9 @@ Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<dou
 Eigen::MatrixXd Inverse(const Eigen::MatrixXd& hessian) {
   if (hessian.size() == 0) return hessian;
   const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 1.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * hessian * scale.asDiagonal());
-  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([](double x) { return x > 1e-10 ? 1 / x : 0.0; });
-  const Eigen::MatrixXd half = scale.asDiagonal() * eigen.eigenvectors();
+  const SymmetricEigen eigen = DecomposeSymmetric(scale.asDiagonal() * hessian * scale.asDiagonal());
+  const Eigen::VectorXd inverse = eigen.values.unaryExpr([](double x) { return x > 1e-10 ? 1 / x : 0.0; });
+  const Eigen::MatrixXd half = scale.asDiagonal() * eigen.vectors;
   return half * inverse.asDiagonal() * half.transpose();
 }
 

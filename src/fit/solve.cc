@@ -3,9 +3,10 @@
 #include <cmath>
 #include <mutex>
 
-#include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
 #include <glog/logging.h>
+
+#include "lobefit/fit/symmetric_eigen.h"
 
 namespace lobefit {
 namespace {
@@ -53,10 +54,10 @@ class Secant {
     const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt();
     const Eigen::VectorXd inverse = scale.unaryExpr([](double x) { return x > 0 ? 1 / x : 0.0; });
     const Eigen::MatrixXd scaled = inverse.asDiagonal() * hessian * inverse.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        scaled + Eigen::MatrixXd(inverse.asDiagonal() * correction_ * inverse.asDiagonal()));
-    const Eigen::MatrixXd& vectors = eigen.eigenvectors();
-    Eigen::VectorXd curvature = eigen.eigenvalues();
+    const SymmetricEigen eigen =
+        DecomposeSymmetric(scaled + Eigen::MatrixXd(inverse.asDiagonal() * correction_ * inverse.asDiagonal()));
+    const Eigen::MatrixXd& vectors = eigen.vectors;
+    Eigen::VectorXd curvature = eigen.values;
     for (Eigen::Index i = 0; i < curvature.size(); ++i) {
       const double own = vectors.col(i).dot(scaled * vectors.col(i));
       curvature(i) = own < kUndetermined ? own : std::max(curvature(i), kLeastShare * own);
@@ -128,16 +129,16 @@ class StreamedCost : public ceres::CostFunction {
     hessian = secant_.Corrected(hessian);
     const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0 ? x : 1.0; });
     const Eigen::VectorXd inverse = scale.cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * hessian * inverse.asDiagonal());
-    const Eigen::VectorXd root = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    const SymmetricEigen eigen = DecomposeSymmetric(inverse.asDiagonal() * hessian * inverse.asDiagonal());
+    const Eigen::VectorXd root = eigen.values.cwiseMax(0.0).cwiseSqrt();
     const double floor = std::numeric_limits<double>::epsilon() * static_cast<double>(n) * root.maxCoeff();
-    Eigen::VectorXd c = eigen.eigenvectors().transpose() * (inverse.asDiagonal() * gradient);
+    Eigen::VectorXd c = eigen.vectors.transpose() * (inverse.asDiagonal() * gradient);
     for (Eigen::Index i = 0; i < n; ++i) c(i) = root(i) > floor ? c(i) / root(i) : 0.0;
     r.head(n) = c;
     r(n) = std::sqrt(std::max(0.0, sum - c.squaredNorm()));
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> j(jacobians[0], n + 1, n);
     j.setZero();
-    j.topRows(n) = root.asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal();
+    j.topRows(n) = root.asDiagonal() * eigen.vectors.transpose() * scale.asDiagonal();
     return true;
   }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "lobefit/base/text.h"
 #include "lobefit/fit/solve.h"
+#include "lobefit/fit/symmetric_eigen.h"
 
 namespace lobefit {
 namespace {
@@ -111,12 +111,11 @@ Meat SumWithLeverages(const Problem& problem, const Layout& layout, const std::v
 void InflateClusters(Meat* meat) {
   const Eigen::Index m = meat->clusters.cols();
   for (Eigen::Index g = 0; g < meat->clusters.rows(); ++g) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(meat->cluster_hessians.middleRows(g * m, m));
+    const SymmetricEigen eigen = DecomposeSymmetric(meat->cluster_hessians.middleRows(g * m, m));
     const Eigen::VectorXd factor =
-        (1 - eigen.eigenvalues().array()).unaryExpr([](double x) { return x > 1e-9 ? 1 / std::sqrt(x) : 0.0; });
+        (1 - eigen.values.array()).unaryExpr([](double x) { return x > 1e-9 ? 1 / std::sqrt(x) : 0.0; });
     const Eigen::VectorXd score = meat->clusters.row(g).transpose();
-    meat->clusters.row(g) =
-        (eigen.eigenvectors() * (factor.asDiagonal() * (eigen.eigenvectors().transpose() * score))).transpose();
+    meat->clusters.row(g) = (eigen.vectors * (factor.asDiagonal() * (eigen.vectors.transpose() * score))).transpose();
   }
 }
 
@@ -207,20 +206,19 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
   }
   const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0 ? x : 1.0; });
   const Eigen::VectorXd inverse_scale = scale.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse_scale.asDiagonal() * h *
-                                                             inverse_scale.asDiagonal());
-  Eigen::VectorXd inverse_eigenvalue = eigen.eigenvalues();
+  const SymmetricEigen eigen = DecomposeSymmetric(inverse_scale.asDiagonal() * h * inverse_scale.asDiagonal());
+  Eigen::VectorXd inverse_eigenvalue = eigen.values;
   for (Eigen::Index k = 0; k < m; ++k) {
     const bool undetermined = inverse_eigenvalue(k) < kUndetermined;
     if (undetermined) {
       result.determined = false;
-      result.degenerate.push_back(NameDirection(eigen.eigenvectors().col(k), active, layout));
+      result.degenerate.push_back(NameDirection(eigen.vectors.col(k), active, layout));
     }
     inverse_eigenvalue(k) = undetermined ? 0.0 : 1 / inverse_eigenvalue(k);
   }
   // H^-1 = whitening whitening^T, with undetermined directions left out.
   const Eigen::MatrixXd whitening =
-      inverse_scale.asDiagonal() * eigen.eigenvectors() * inverse_eigenvalue.cwiseSqrt().asDiagonal();
+      inverse_scale.asDiagonal() * eigen.vectors * inverse_eigenvalue.cwiseSqrt().asDiagonal();
   const double work = static_cast<double>(problem.size()) *
                       (static_cast<double>(layout.channels()) * static_cast<double>(m * m) + kLeverageWorkOfSample);
   const bool with_leverages = work <= kMostLeverageWork;

@@ -1,7 +1,7 @@
 #include "tests/fuzz/fuzz_reader.h"
 #include <ImfHeader.h>
 
-// Built without AddressSanitizer (preset fuzz-exr). OpenEXR reserves memory for as many pixels as the head announces
+// OpenEXR reserves memory for as many pixels as the head announces
 // before it sees the first: smaller images than the reader allows keep a run short.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const bool limited = [] {

@@ -1,38 +1,14 @@
 // Validation of documents against the JSON Schemas that are installed.
 #pragma once
 
-#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 
 namespace lobefit {
 
-inline testing::AssertionResult FollowsSchema(const std::string& document,
-                                              const std::string& schema_file = "src/material/material.schema.json") {
-  std::ifstream in(std::string(LOBEFIT_SOURCE_DIR) + "/" + schema_file);
-  const nlohmann::json schema_json = nlohmann::json::parse(in);
-  valijson::Schema schema;
-  valijson::SchemaParser parser;
-  const valijson::adapters::NlohmannJsonAdapter schema_adapter(schema_json);
-  parser.populateSchema(schema_adapter, schema);
-  const nlohmann::json target_json = nlohmann::json::parse(document);
-  const valijson::adapters::NlohmannJsonAdapter target(target_json);
-  valijson::Validator validator;
-  valijson::ValidationResults results;
-  if (validator.validate(schema, target, &results)) return testing::AssertionSuccess();
-  testing::AssertionResult failure = testing::AssertionFailure();
-  valijson::ValidationResults::Error error;
-  while (results.popError(error)) {
-    for (const std::string& part : error.context) failure << part;
-    failure << ": " << error.description << '\n';
-  }
-  return failure;
-}
+// `schema_file` counts from the repository.
+testing::AssertionResult FollowsSchema(const std::string& document,
+                                       const std::string& schema_file = "src/material/material.schema.json");
 
 }  // namespace lobefit
