@@ -117,9 +117,15 @@ std::string_view WordReader::Word(const std::string& what) {
   return *word;
 }
 
-double WordReader::Number(const std::string& what) { return NumberAt(file_, line_, Word(what), what); }
+double WordReader::Number(const std::string& what) {
+  const std::string_view word = Word(what);  // first: it moves line_
+  return NumberAt(file_, line_, word, what);
+}
 
-double WordReader::FiniteNumber(const std::string& what) { return FiniteNumberAt(file_, line_, Word(what), what); }
+double WordReader::FiniteNumber(const std::string& what) {
+  const std::string_view word = Word(what);
+  return FiniteNumberAt(file_, line_, word, what);
+}
 
 std::size_t WordReader::MostWordsLeft() const { return (rest_.size() + file_.bytes.size() - lines_.offset() + 1) / 2; }
 

@@ -326,7 +326,7 @@ int main(int argc, char** argv) {
     lobefit::Growth(quick ? std::vector<std::size_t>{1000, 2000}
                           : std::vector<std::size_t>{10000, 100000, 1000000, 10000000});
   }
-  if (wanted("autodiff")) lobefit::AgainstAutoDiff(quick ? 2000 : 300000);
+  if (wanted("autodiff")) lobefit::AgainstAutoDiff(quick ? 2000 : 1458000);
   if (wanted("small")) lobefit::SmallFits(quick ? 50 : 10000);
   if (wanted("two-lobes")) lobefit::TwoLobes(quick ? 5000 : 900000);
   return 0;
