@@ -169,8 +169,7 @@ std::vector<ExportResult> ExportModel(const Material& material, const ExportOpti
 }  // namespace
 
 std::vector<ExportResult> ExportMaterial(const Material& material, const ExportOptions& options) {
-  std::vector<ExportResult> results =
-      material.sel ? ExportSel(material, options) : ExportModel(material, options);
+  std::vector<ExportResult> results = material.sel ? ExportSel(material, options) : ExportModel(material, options);
   WriteFileAtomically(options.folder / (options.name + ".export.json"), ExportJson(material, options, results));
   return results;
 }

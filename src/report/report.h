@@ -29,8 +29,8 @@ void WriteReport(const Material& material, const Measurement& measurement, const
                  const ReportOptions& options = {});
 
 // Draws `material` against the measurement that it was fitted to, as a PNG. Panels that the measurement cannot fill are
-// left out. Throws InputError where the channels of the two differ or there are fewer than two samples, OutputError where the file
-// cannot be written.
+// left out. Throws InputError where the channels of the two differ or there are fewer than two samples, OutputError
+// where the file cannot be written.
 void WriteReportPng(const Material& material, const Measurement& measurement, const std::filesystem::path& path,
                     const ReportOptions& options = {});
 

@@ -77,6 +77,8 @@ bool IsCovered(const Sphere& sphere) {
   return known >= kLeastCover * static_cast<double>(sphere.known.size());
 }
 
+bool HasHoles(const Sphere& sphere) { return std::count(sphere.known.begin(), sphere.known.end(), 0) > 0; }
+
 struct Spheres {
   std::array<Sphere, 4> sphere;  // measured and fitted under the light, under the sky
   std::array<double, 2> exposure;
@@ -267,6 +269,8 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
   panel.id = "sphere";
   panel.title = "As it looks";
   panel.wide = spheres->measured;
+  if (spheres->measured && (HasHoles(spheres->sphere[0]) || (spheres->sky && HasHoles(spheres->sphere[2]))))
+    panel.legend = {{LegendEntry::Mark::kNone, {}, "grey: no sample near"}};
   panel.height = [spheres](Canvas*, double width) { return 42 + Side(*spheres, width) + 8; };
   panel.draw = [spheres](Canvas* canvas, const Box& content) { Draw(*spheres, canvas, content); };
   return panel;

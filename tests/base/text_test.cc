@@ -1,4 +1,3 @@
-#include "lobefit/base/plain_decimal.h"
 #include "lobefit/base/text.h"
 
 #include <bit>
@@ -9,6 +8,8 @@
 #include <string>
 
 #include <gtest/gtest.h>
+
+#include "lobefit/base/plain_decimal.h"
 
 namespace lobefit {
 namespace {
