@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "lobefit/core/quantities.h"
+#include "lobefit/quantities/quantities.h"
 
 namespace lobefit {
 

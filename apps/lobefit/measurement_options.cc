@@ -1,6 +1,6 @@
 #include "measurement_options.h"
 
-#include "lobefit/io/options.h"
+#include "lobefit/io/text/options.h"
 #include "lobefit/measurement/spectrum.h"
 
 namespace lobefit {

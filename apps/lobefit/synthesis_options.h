@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "lobefit/measurement/synthesis.h"
+#include "lobefit/synthesis/synthesis.h"
 #include "lobefit/validate/layouts.h"
 #include "lobefit/validate/truth.h"
 

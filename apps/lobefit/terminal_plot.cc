@@ -9,9 +9,9 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "lobefit/core/reflectance.h"
+#include "lobefit/core/brdf/brdf.h"
 #include "lobefit/math/directions.h"
-#include "lobefit/report/slices.h"
+#include "lobefit/report/figures/slices.h"
 
 namespace lobefit {
 namespace {

@@ -17,10 +17,11 @@
 #include "lobefit/base/text.h"
 #include "lobefit/export/import.h"
 #include "lobefit/fit/compare.h"
-#include "lobefit/fit/sel_slice.h"
+#include "lobefit/fit/fit.h"
+#include "lobefit/fit/sel/slice.h"
 #include "lobefit/material/json.h"
 #include "lobefit/measurement/incidence.h"
-#include "lobefit/report/comparison.h"
+#include "lobefit/report/comparison/comparison.h"
 
 namespace lobefit {
 namespace {

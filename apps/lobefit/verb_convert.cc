@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "lobefit/io/options.h"
+#include "lobefit/io/text/options.h"
 #include "lobefit/io/write.h"
 
 namespace lobefit {

@@ -9,7 +9,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
-#include "lobefit/core/quantities.h"
+#include "lobefit/quantities/quantities.h"
 
 namespace lobefit {
 namespace {

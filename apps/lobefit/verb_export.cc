@@ -8,6 +8,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/export/export.h"
+#include "lobefit/export/targets.h"
 #include "lobefit/material/json.h"
 
 namespace lobefit {

@@ -15,8 +15,8 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
-#include "lobefit/fit/sel_fit.h"
-#include "lobefit/fit/sel_sampling.h"
+#include "lobefit/fit/fit.h"
+#include "lobefit/fit/sel/sampling.h"
 #include "lobefit/material/json.h"
 #include "lobefit/report/report.h"
 

@@ -14,7 +14,7 @@
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/measurement/statistics.h"
-#include "lobefit/report/coverage.h"
+#include "lobefit/report/figures/coverage.h"
 
 namespace lobefit {
 namespace {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/io/csv/writer.h"
 #include "lobefit/io/write.h"
-#include "lobefit/io/write_csv.h"
 #include "lobefit/validate/truth_file.h"
 
 namespace lobefit {

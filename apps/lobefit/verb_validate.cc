@@ -16,7 +16,7 @@
 #include "lobefit/io/read.h"
 #include "lobefit/validate/calibration.h"
 #include "lobefit/validate/calibration_json.h"
-#include "lobefit/validate/picture.h"
+#include "lobefit/validate/pictures/picture.h"
 #include "lobefit/validate/recovery.h"
 #include "lobefit/validate/self_check.h"
 #include "lobefit/validate/sweep.h"

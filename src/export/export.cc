@@ -10,8 +10,10 @@
 #include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
 #include "lobefit/base/version.h"
+#include "lobefit/export/import.h"
 #include "lobefit/export/refit.h"
-#include "lobefit/export/sel_export.h"
+#include "lobefit/export/targets.h"
+#include "lobefit/export/targets/sel/document.h"
 
 namespace lobefit {
 namespace {
@@ -88,7 +90,7 @@ std::vector<std::string> Header(const Material& material, const ExportOptions& o
 }
 
 WriteContext ContextOf(const Material& material, const ExportOptions& options, const ExportResult& result) {
-  return {options.folder, options.name, Header(material, options, result), options.threads};
+  return {options.folder, options.name, Header(material, options, result), options.threads, ImportMaterial};
 }
 
 // What counts is the file: it is read back where it can be.

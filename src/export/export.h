@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/export/error_meter.h"
-#include "lobefit/export/target.h"
+#include "lobefit/export/targets/error_meter.h"
+#include "lobefit/export/targets/target.h"
 #include "lobefit/material/material.h"
 
 namespace lobefit {

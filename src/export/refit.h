@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "lobefit/export/error_meter.h"
-#include "lobefit/export/fitted_brdf.h"
+#include "lobefit/export/targets/error_meter.h"
+#include "lobefit/renderer/fitted_brdf.h"
 
 namespace lobefit {
 

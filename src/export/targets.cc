@@ -1,3 +1,5 @@
+#include "lobefit/export/targets.h"
+
 #include <algorithm>
 #include <array>
 
@@ -5,16 +7,15 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
-#include "lobefit/export/features.h"
-#include "lobefit/export/gltf.h"
-#include "lobefit/export/materialx.h"
-#include "lobefit/export/mitsuba.h"
-#include "lobefit/export/pbrt.h"
-#include "lobefit/export/sel_export.h"
-#include "lobefit/export/shader_targets.h"
-#include "lobefit/export/surface.h"
-#include "lobefit/export/table_targets.h"
-#include "lobefit/export/target.h"
+#include "lobefit/export/targets/features.h"
+#include "lobefit/export/targets/gltf/write.h"
+#include "lobefit/export/targets/materialx/write.h"
+#include "lobefit/export/targets/mitsuba/write.h"
+#include "lobefit/export/targets/pbrt/write.h"
+#include "lobefit/export/targets/sel/document.h"
+#include "lobefit/export/targets/shaders/write.h"
+#include "lobefit/export/targets/tables/write.h"
+#include "lobefit/renderer/surface.h"
 
 namespace lobefit {
 namespace {
@@ -202,15 +203,6 @@ const Target& FindTarget(std::string_view name) {
   }
   throw UsageError(
       fmt::format("'{}' is not a target{}; the targets are: {}", Excerpt(name), DidYouMean(name, names), Join(names)));
-}
-
-BrdfFunction InChannelsOf(const FittedBrdf& fit, const BrdfFunction& rgb) {
-  if (fit.material().channels.size() >= 3) return rgb;
-  return [rgb](const Vec3& wi, const Vec3& wo, double* values) {
-    std::array<double, 3> all = {};
-    rgb(wi, wo, all.data());
-    values[0] = all[0];
-  };
 }
 
 }  // namespace lobefit

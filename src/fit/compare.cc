@@ -12,12 +12,12 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
-#include "lobefit/fit/layout.h"
-#include "lobefit/fit/prediction.h"
-#include "lobefit/fit/problem.h"
-#include "lobefit/fit/sel_fit.h"
-#include "lobefit/fit/sel_slice.h"
-#include "lobefit/fit/starts.h"
+#include "lobefit/fit/fit.h"
+#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/objective/prediction.h"
+#include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/starts.h"
+#include "lobefit/fit/sel/slice.h"
 #include "lobefit/measurement/incidence.h"
 
 namespace lobefit {

@@ -11,13 +11,14 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
-#include "lobefit/fit/layout.h"
-#include "lobefit/fit/misfit.h"
-#include "lobefit/fit/prediction.h"
-#include "lobefit/fit/problem.h"
-#include "lobefit/fit/rivals.h"
-#include "lobefit/fit/search.h"
-#include "lobefit/fit/uncertainty.h"
+#include "lobefit/fit/inference/misfit.h"
+#include "lobefit/fit/inference/rivals.h"
+#include "lobefit/fit/inference/uncertainty.h"
+#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/objective/prediction.h"
+#include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/search.h"
+#include "lobefit/fit/sel/fit.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/measurement/isotropy.h"
@@ -256,6 +257,10 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   // "solve" is the part of "fit" that searches and descends.
   material.timings_s = {{"read", 0.0}, {"solve", solve_s}, {"fit", SecondsSince(start_time)}, {"report", 0.0}};
   return material;
+}
+
+Material FitRecipe(const Recipe& recipe, const FitOptions& options, Measurement* measurement) {
+  return recipe.sel ? FitSel(recipe, options, measurement) : Fit(recipe, options, measurement);
 }
 
 }  // namespace lobefit

@@ -2,24 +2,14 @@
 // it.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
+#include "lobefit/fit/search/fit_options.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"
 
 namespace lobefit {
-
-struct FitOptions {
-  int threads = 1;
-  // Descents on the subsample, from the best-ranked starts; five times as many for models of several lobes.
-  std::size_t starts = 8;
-  std::uint64_t seed = 1;
-  // Samples of the subsample on which starts are ranked and descended; fits with at most three times as many use all
-  // samples throughout. Larger ones go through a second level of 40 000 samples.
-  std::size_t subsample = 2000;
-};
 
 // What the automatic recipe needs to know.
 MeasurementTraits TraitsOf(const Measurement& measurement);
@@ -29,6 +19,9 @@ MeasurementTraits TraitsOf(const Measurement& measurement);
 // values than free parameters. A fit that did not converge or is not determined is returned, and says so in
 // Material::termination.
 Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measurement);
+
+// FitSel (fit/sel/fit.h) for a recipe with [sel], else Fit.
+Material FitRecipe(const Recipe& recipe, const FitOptions& options, Measurement* measurement);
 
 // What an automatic choice turns to where its first result shows that it was wrong: an in-plane measurement does not
 // see the lobe's width across the plane, which scales the values as f0 does; where f0 ends at 1 they become one free

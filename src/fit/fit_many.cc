@@ -8,11 +8,11 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
-#include "lobefit/core/lobe.h"
-#include "lobefit/fit/layout.h"
-#include "lobefit/fit/problem.h"
-#include "lobefit/fit/solve.h"
-#include "lobefit/fit/starts.h"
+#include "lobefit/core/brdf/lobe.h"
+#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/solve.h"
+#include "lobefit/fit/search/starts.h"
 
 namespace lobefit {
 namespace {

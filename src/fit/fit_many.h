@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lobefit/core/model.h"
+#include "lobefit/core/brdf/model.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"
 

@@ -1,5 +1,21 @@
 #include "lobefit/io/formats.h"
 
+#include "lobefit/io/alta/reader.h"
+#include "lobefit/io/astm/reader.h"
+#include "lobefit/io/bsdf_xml/reader.h"
+#include "lobefit/io/cornell/reader.h"
+#include "lobefit/io/csv/reader.h"
+#include "lobefit/io/exr/reader.h"
+#include "lobefit/io/fred/reader.h"
+#include "lobefit/io/lighttools/reader.h"
+#include "lobefit/io/mbsdf/reader.h"
+#include "lobefit/io/merl/reader.h"
+#include "lobefit/io/mit/reader.h"
+#include "lobefit/io/mountain/reader.h"
+#include "lobefit/io/rgl/reader.h"
+#include "lobefit/io/utia/reader.h"
+#include "lobefit/io/zemax/reader.h"
+
 namespace lobefit {
 
 const std::vector<Format>& Formats() {

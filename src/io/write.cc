@@ -8,15 +8,15 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
-#include "lobefit/io/rgl_brdf.h"
-#include "lobefit/io/write_alta.h"
-#include "lobefit/io/write_csv.h"
-#include "lobefit/io/write_exr.h"
-#include "lobefit/io/write_merl.h"
-#include "lobefit/io/write_mountain.h"
-#include "lobefit/io/write_tensor_tree.h"
+#include "lobefit/io/alta/writer.h"
+#include "lobefit/io/bsdf_xml/writer.h"
+#include "lobefit/io/csv/writer.h"
+#include "lobefit/io/exr/writer.h"
+#include "lobefit/io/merl/writer.h"
+#include "lobefit/io/mountain/writer.h"
+#include "lobefit/io/rgl/brdf.h"
 #include "lobefit/math/directions.h"
-#include "lobefit/measurement/synthesis.h"
+#include "lobefit/synthesis/synthesis.h"
 
 namespace lobefit {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/io/exr_map.h"
+#include "lobefit/io/exr/map.h"
 #include "lobefit/io/read.h"
-#include "lobefit/io/write_rgl.h"
+#include "lobefit/io/rgl/writer.h"
 #include "lobefit/measurement/brdf_function.h"
 #include "lobefit/measurement/interpolation.h"
 #include "lobefit/measurement/measurement.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/core/optical_constants.h"
+#include "lobefit/core/fresnel/optical_constants.h"
 
 namespace lobefit {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/core/model.h"
-#include "lobefit/core/sel_table.h"
+#include "lobefit/core/brdf/model.h"
+#include "lobefit/core/sel/sel_table.h"
 
 namespace lobefit {
 

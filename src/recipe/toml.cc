@@ -10,7 +10,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
-#include "lobefit/core/optical_constants.h"
+#include "lobefit/core/fresnel/optical_constants.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/recipe/recipe.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/report/field_image.h"
+#include "lobefit/report/figures/field_image.h"
 
 namespace lobefit {
 

@@ -5,9 +5,10 @@
 
 #include "lobefit/base/file.h"
 #include "lobefit/base/parallel.h"
+#include "lobefit/plot/png.h"
 #include "lobefit/report/exr.h"
-#include "lobefit/report/page.h"
-#include "lobefit/report/png.h"
+#include "lobefit/report/figures/page.h"
+#include "lobefit/report/web/html.h"
 
 namespace lobefit {
 

@@ -2,21 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
+#include "lobefit/report/figures/report_options.h"
+#include "lobefit/report/web/html.h"
 
 namespace lobefit {
-
-struct ReportOptions {
-  int threads = 1;
-  // Pixels to one page unit. The page is 1320 units wide; text is at least 11 units high.
-  double scale = 2;
-  // Folders searched for DejaVu fonts; empty: the usual places. Without them OpenCV's stroke font is used.
-  std::vector<std::string> font_folders;
-};
 
 // Where a report is to be written; an empty path is left out.
 struct ReportPaths {

@@ -6,8 +6,9 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
-#include "lobefit/fit/layout.h"
-#include "lobefit/fit/problem.h"
+#include "lobefit/fit/fit.h"
+#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/objective/problem.h"
 #include "lobefit/measurement/incidence.h"
 
 namespace lobefit {

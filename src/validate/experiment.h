@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lobefit/fit/fit.h"
-#include "lobefit/measurement/synthesis.h"
+#include "lobefit/synthesis/synthesis.h"
 #include "lobefit/validate/truth.h"
 
 namespace lobefit {

@@ -8,11 +8,11 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
-#include "lobefit/core/vndf.h"
-#include "lobefit/io/angle_basis.h"
-#include "lobefit/io/merl_table.h"
+#include "lobefit/core/brdf/vndf.h"
+#include "lobefit/io/bsdf_xml/angle_basis.h"
+#include "lobefit/io/merl/table.h"
 #include "lobefit/io/read.h"
-#include "lobefit/io/utia_grid.h"
+#include "lobefit/io/utia/grid.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/core/off_center.h"
-#include "lobefit/core/reflectance.h"
+#include "lobefit/core/brdf/brdf.h"
+#include "lobefit/core/ndf/off_center.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/core/model.h"
+#include "lobefit/core/brdf/model.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/brdf_function.h"
-#include "lobefit/measurement/random.h"
 #include "lobefit/recipe/recipe.h"
+#include "lobefit/synthesis/random.h"
 
 namespace lobefit {
 

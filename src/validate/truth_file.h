@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/measurement/synthesis.h"
+#include "lobefit/synthesis/synthesis.h"
 #include "lobefit/validate/truth.h"
 
 namespace lobefit {

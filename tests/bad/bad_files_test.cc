@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "tests/support/paths.h"
 #include "tests/support/temporary_file.h"
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -13,14 +14,14 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
-#include "lobefit/io/csv_columns.h"
+#include "lobefit/io/csv/columns.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/read.h"
 
 namespace lobefit {
 namespace {
 
-const std::filesystem::path kFolder = std::filesystem::path(LOBEFIT_SOURCE_DIR) / "tests" / "bad";
+const std::filesystem::path kFolder = test::SourceDir() / "tests" / "bad";
 
 std::string Replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);

@@ -20,15 +20,17 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/paths.h"
+
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
-#include "lobefit/core/ellipsoid.h"
-#include "lobefit/core/lune.h"
-#include "lobefit/core/quantities.h"
-#include "lobefit/core/sel.h"
-#include "lobefit/core/slope_distribution.h"
+#include "lobefit/core/masking/lune.h"
+#include "lobefit/core/ndf/ellipsoid.h"
+#include "lobefit/core/ndf/slope_distribution.h"
+#include "lobefit/core/sel/sel.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/math/rotation.h"
+#include "lobefit/quantities/quantities.h"
 
 namespace lobefit {
 namespace {
@@ -53,7 +55,7 @@ struct Table {
 };
 
 Table ReadTable(const std::string& name) {
-  const MappedFile file(std::string(LOBEFIT_SOURCE_DIR) + "/tests/data/reference/" + name + ".csv");
+  const MappedFile file(test::SourceDir() / "tests/data/reference" / (std::string(name) + ".csv"));
   Table table;
   LineReader lines(file.bytes());
   std::string_view line;

@@ -16,8 +16,8 @@
 #include <ceres/jet.h>
 #include <hwy/base.h>
 
-#include "lobefit/core/ggx_lobe.h"
-#include "lobefit/core/slope_ndf.h"
+#include "lobefit/core/brdf/ggx_lobe.h"
+#include "lobefit/core/ndf/slope_ndf.h"
 
 namespace lobefit {
 namespace {
@@ -30,7 +30,7 @@ inline Jet Root(const Jet& x) { return sqrt(x); }
 inline Jet Constant(const Jet& /*like*/, double value) { return Jet(value); }
 inline Jet SelectNegative(const Jet& x, const Jet& yes, const Jet& no) { return x < 0.0 ? yes : no; }
 
-#include "lobefit/core/ggx_lobe-inl.h"
+#include "lobefit/core/brdf/ggx_lobe-inl.h"
 
 GgxLobeUniform<Jet> Uniform(const SlopeCoordinates& shape) {
   const Jet a = exp(Jet(shape.v[2], 2)), c = exp(Jet(shape.v[4], 4));

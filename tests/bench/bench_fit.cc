@@ -14,12 +14,12 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/parallel.h"
-#include "lobefit/core/reflectance.h"
-#include "lobefit/core/slope_ndf.h"
+#include "lobefit/core/brdf/brdf.h"
+#include "lobefit/core/ndf/slope_ndf.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/fit_many.h"
-#include "lobefit/fit/problem.h"
-#include "lobefit/fit/solve.h"
+#include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/solve.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

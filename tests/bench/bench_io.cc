@@ -13,8 +13,8 @@
 
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/merl/writer.h"
 #include "lobefit/io/read.h"
-#include "lobefit/io/write_merl.h"
 
 namespace lobefit {
 namespace {

@@ -14,8 +14,8 @@
 
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/fit.h"
-#include "lobefit/fit/solve.h"
-#include "lobefit/fit/starts.h"
+#include "lobefit/fit/search/solve.h"
+#include "lobefit/fit/search/starts.h"
 #include "lobefit/io/read.h"
 #include "lobefit/recipe/recipe.h"
 

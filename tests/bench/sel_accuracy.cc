@@ -10,9 +10,9 @@
 #include <cstdio>
 #include <string>
 
-#include "lobefit/core/ggx_lobe.h"
-#include "lobefit/core/off_center.h"
-#include "lobefit/fit/sel_slice.h"
+#include "lobefit/core/brdf/ggx_lobe.h"
+#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/fit/sel/slice.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

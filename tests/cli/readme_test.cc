@@ -1,5 +1,6 @@
 #include <sstream>
 
+#include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include <gtest/gtest.h>
 
@@ -25,8 +26,7 @@ std::vector<std::string> Commands(const std::string& markdown) {
 
 // The commands run one after the other in a folder that has samples/ and fits/, as they would in a checkout.
 TEST_F(Readme, EveryCommandOfTheProgramWorks) {
-  const std::vector<std::string> commands =
-      Commands(ReadWholeFile(std::filesystem::path(LOBEFIT_SOURCE_DIR) / "README.md"));
+  const std::vector<std::string> commands = Commands(ReadWholeFile(test::SourceDir() / "README.md"));
   EXPECT_GE(commands.size(), 6U);
   ASSERT_EQ(Shell("cp -r $SOURCE/samples $SOURCE/fits .").exit_code, 0);
   for (const std::string& command : commands) {

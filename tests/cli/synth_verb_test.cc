@@ -1,3 +1,4 @@
+#include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ TEST_F(SynthVerb, NoiseFreeBrushedMetalIsRecoveredTo1e6) {
 TEST_F(SynthVerb, TheSamplesAreMadeByTheCommandsOfTheirReadme) {
   // samples/README.md lists the command of each sample; made again, the bytes are the same but for the line with the
   // command.
-  const std::string readme = ReadWholeFile(std::filesystem::path(LOBEFIT_SOURCE_DIR) / "samples" / "README.md");
+  const std::string readme = ReadWholeFile(test::SourceDir() / "samples" / "README.md");
   const auto without_command = [](std::string text) { return text.substr(text.find('\n')); };
   std::stringstream lines(readme);
   int made = 0;
@@ -39,8 +40,7 @@ TEST_F(SynthVerb, TheSamplesAreMadeByTheCommandsOfTheirReadme) {
               0)
         << line;
     const std::string out = line.substr(line.find("--out ") + 6);
-    EXPECT_EQ(without_command(ReadWholeFile(folder_ / out)),
-              without_command(ReadWholeFile(std::filesystem::path(LOBEFIT_SOURCE_DIR) / out)))
+    EXPECT_EQ(without_command(ReadWholeFile(folder_ / out)), without_command(ReadWholeFile(test::SourceDir() / out)))
         << out;
     ++made;
   }

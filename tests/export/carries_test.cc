@@ -8,6 +8,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/export/export.h"
 #include "lobefit/export/refit.h"
+#include "lobefit/export/targets.h"
 
 namespace lobefit {
 namespace {

@@ -14,6 +14,7 @@
 
 #include "lobefit/base/file.h"
 #include "lobefit/export/export.h"
+#include "lobefit/export/targets.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/spectrum.h"
 

@@ -8,7 +8,8 @@
 #include "lobefit/base/file.h"
 #include "lobefit/export/export.h"
 #include "lobefit/export/import.h"
-#include "lobefit/export/surface.h"
+#include "lobefit/export/targets.h"
+#include "lobefit/renderer/surface.h"
 
 namespace lobefit {
 namespace {

@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lobefit/core/sel_bound.h"
-#include "lobefit/export/sel_glsl.h"
+#include "lobefit/core/sel/sel_bound.h"
+#include "lobefit/export/targets/sel/glsl.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

@@ -13,7 +13,7 @@
 
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
-#include "lobefit/export/shader_targets.h"
+#include "lobefit/export/targets/shaders/write.h"
 
 namespace lobefit {
 namespace {

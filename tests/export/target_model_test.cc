@@ -15,8 +15,9 @@
 #include "lobefit/base/file.h"
 #include "lobefit/export/export.h"
 #include "lobefit/export/import.h"
-#include "lobefit/export/normal_map.h"
-#include "lobefit/export/roughness.h"
+#include "lobefit/export/targets.h"
+#include "lobefit/renderer/normal_map.h"
+#include "lobefit/renderer/roughness.h"
 
 namespace lobefit {
 namespace {

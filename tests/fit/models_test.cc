@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/core/optical_constants.h"
+#include "lobefit/core/fresnel/optical_constants.h"
 #include "lobefit/fit/fit.h"
 
 namespace lobefit {

@@ -1,6 +1,8 @@
 #include "tests/fuzz/fuzz_reader.h"
 #include <ImfHeader.h>
 
+#include "lobefit/io/exr/reader.h"
+
 // OpenEXR reserves memory for as many pixels as the head announces
 // before it sees the first: smaller images than the reader allows keep a run short.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,7 @@
 #include "tests/fuzz/fuzz_reader.h"
 
-#include "lobefit/io/merl_table.h"
+#include "lobefit/io/merl/reader.h"
+#include "lobefit/io/merl/table.h"
 
 namespace {
 

@@ -1,6 +1,7 @@
 #include "tests/fuzz/fuzz_reader.h"
 
-#include "lobefit/io/utia_grid.h"
+#include "lobefit/io/utia/grid.h"
+#include "lobefit/io/utia/reader.h"
 
 // The table of the format, 2 MB without a header, is too large to be read millions of times: the same reader on a small
 // grid.

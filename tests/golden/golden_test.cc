@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "tests/report/synthetic.h"
+#include "tests/support/paths.h"
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include "lobefit/report/page.h"
-#include "lobefit/report/png.h"
+#include "lobefit/plot/png.h"
+#include "lobefit/report/figures/page.h"
 
 namespace lobefit {
 namespace {
@@ -82,7 +83,7 @@ TEST(Golden, Panels) {
   if (!fonts->has_outlines())
     GTEST_SKIP() << "DejaVu fonts are not installed: the stored pictures were drawn with them";
   const bool regenerate = std::getenv("LOBEFIT_REGENERATE_GOLDEN") != nullptr;
-  const std::filesystem::path folder = std::filesystem::path(LOBEFIT_SOURCE_DIR) / "tests" / "golden";
+  const std::filesystem::path folder = test::SourceDir() / "tests" / "golden";
   int compared = 0;
   for (const Case& c : Cases()) {
     const ReportData data(c.material, c.measurement, 2);

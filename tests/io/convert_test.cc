@@ -7,7 +7,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/io/write.h"
-#include "lobefit/measurement/synthesis.h"
+#include "lobefit/synthesis/synthesis.h"
 
 namespace lobefit {
 namespace {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tests/support/paths.h"
 #include <gtest/gtest.h>
 
 #include "lobefit/io/read.h"
@@ -12,7 +13,7 @@
 namespace lobefit {
 namespace {
 
-const std::filesystem::path kData = std::filesystem::path(LOBEFIT_SOURCE_DIR) / ".." / "shared" / "data";
+const std::filesystem::path kData = test::SourceDir() / ".." / "shared" / "data";
 
 #define SKIP_WITHOUT(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << (path) << " is not there"

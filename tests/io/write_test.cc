@@ -6,12 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/io/alta/writer.h"
+#include "lobefit/io/bsdf_xml/writer.h"
+#include "lobefit/io/csv/writer.h"
+#include "lobefit/io/merl/writer.h"
+#include "lobefit/io/mountain/writer.h"
 #include "lobefit/io/read.h"
-#include "lobefit/io/write_alta.h"
-#include "lobefit/io/write_csv.h"
-#include "lobefit/io/write_merl.h"
-#include "lobefit/io/write_mountain.h"
-#include "lobefit/io/write_tensor_tree.h"
 
 namespace lobefit {
 namespace {

@@ -5,7 +5,7 @@
 #include "tests/support/test_brdf.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/measurement/synthesis.h"
+#include "lobefit/synthesis/synthesis.h"
 
 namespace lobefit {
 namespace {

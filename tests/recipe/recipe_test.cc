@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "tests/support/paths.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -70,7 +71,7 @@ TEST(Recipe, MetalsNeedAWavelengthAChannel) {
 
 TEST(Recipe, RecipesOfTheLibraryAreValid) {
   int read = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(LOBEFIT_SOURCE_DIR) + "/fits")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::SourceDir() / "fits")) {
     if (entry.path().extension() != ".toml") continue;
     const Recipe recipe = ReadRecipe(entry.path());
     EXPECT_EQ(recipe.name, entry.path().stem().string());

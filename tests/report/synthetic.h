@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lobefit/core/reflectance.h"
+#include "lobefit/core/brdf/brdf.h"
 #include "lobefit/material/material.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/measurement.h"

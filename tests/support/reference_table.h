@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/support/paths.h"
 #include <gtest/gtest.h>
 
 #include "lobefit/base/text.h"
@@ -22,7 +23,7 @@ class ReferenceTable {
  public:
   explicit ReferenceTable(const std::string& name) {
     const char* other = std::getenv("LOBEFIT_REFERENCE_TABLES");
-    const std::string folder = other != nullptr ? other : LOBEFIT_SOURCE_DIR "/tests/data/reference";
+    const std::string folder = other != nullptr ? other : (test::SourceDir() / "tests/data/reference").string();
     std::ifstream in(folder + "/" + name + ".csv");
     EXPECT_TRUE(in.good()) << name;
     std::stringstream text;

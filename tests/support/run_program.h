@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/paths.h"
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -45,9 +46,10 @@ class ProgramTest : public testing::Test {
 
   // Runs a shell command in the folder; `lobefit` is the built program, $SOURCE the repository.
   ProgramResult Shell(const std::string& command) const {
-    const std::string program = std::filesystem::path(LOBEFIT_PROGRAM).parent_path().string();
+    const std::string program = test::ProgramPath().parent_path().string();
     const std::string full = "cd '" + folder_.string() + "' && export PATH='" + program + "':$PATH SOURCE='" +
-                             LOBEFIT_SOURCE_DIR + "' && { " + command + "\n} >stdout.txt 2>stderr.txt </dev/null";
+                             test::SourceDir().string() + "' && { " + command +
+                             "\n} >stdout.txt 2>stderr.txt </dev/null";
     const int status = std::system(full.c_str());
     ProgramResult result = {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadWholeFile(folder_ / "stdout.txt"),
                             ReadWholeFile(folder_ / "stderr.txt")};

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "tests/support/paths.h"
 #include <nlohmann/json.hpp>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -11,7 +12,7 @@
 namespace lobefit {
 
 testing::AssertionResult FollowsSchema(const std::string& document, const std::string& schema_file) {
-  std::ifstream in(std::string(LOBEFIT_SOURCE_DIR) + "/" + schema_file);
+  std::ifstream in(test::SourceDir() / schema_file);
   const nlohmann::json schema_json = nlohmann::json::parse(in);
   valijson::Schema schema;
   valijson::SchemaParser parser;

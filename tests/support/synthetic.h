@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "lobefit/core/reflectance.h"
-#include "lobefit/measurement/synthesis.h"
+#include "lobefit/core/brdf/brdf.h"
+#include "lobefit/synthesis/synthesis.h"
 
 namespace lobefit {
 

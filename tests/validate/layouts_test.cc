@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/io/write_csv.h"
+#include "lobefit/io/csv/writer.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

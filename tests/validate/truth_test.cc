@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/core/ellipsoid.h"
+#include "lobefit/core/ndf/ellipsoid.h"
+#include "lobefit/io/csv/writer.h"
 #include "lobefit/io/read.h"
-#include "lobefit/io/write_csv.h"
 #include "lobefit/validate/truth_file.h"
 
 namespace lobefit {

@@ -1,0 +1,16 @@
+// The table of targets: a new one is one folder below export/targets and one row in targets.cc.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "lobefit/export/targets/target.h"
+
+namespace lobefit {
+
+const std::vector<Target>& ExportTargets();
+
+// Throws UsageError that lists the targets and suggests one.
+const Target& FindTarget(std::string_view name);
+
+}  // namespace lobefit

@@ -1,0 +1,168 @@
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+#include "lobefit/export/targets/materialx/write.h"
+#include "lobefit/io/text/xml_file.h"
+
+namespace lobefit {
+namespace {
+
+class MaterialXReader {
+ public:
+  explicit MaterialXReader(const InputFile& file) : xml_(file) {
+    for (const pugi::xml_node node : xml_.root().children()) nodes_[node.attribute("name").value()] = node;
+  }
+
+  MaterialXDocument Read() const {
+    const pugi::xml_node material = xml_.root().child("surfacematerial");
+    if (!material) xml_.Fail(xml_.root(), "holds no <surfacematerial>");
+    const pugi::xml_node shader = Source(material, "surfaceshader");
+    const std::string type = shader.name();
+    if (type == "open_pbr_surface") return {OpenPbrSurface(ReadOpenPbr(shader)), true};
+    if (type != "surface") {
+      xml_.Fail(shader,
+                fmt::format("the shader <{}> is not understood; surface and open_pbr_surface are", Excerpt(type)));
+    }
+    MaterialXDocument document;
+    document.surface.masking = SurfaceMasking::kMeanAlpha;
+    document.surface.energy_compensation = true;
+    Add(Source(shader, "bsdf"), 1, 0, &document.surface);
+    return document;
+  }
+
+ private:
+  static pugi::xml_node Input(pugi::xml_node node, std::string_view name) {
+    for (const pugi::xml_node child : node.children("input")) {
+      if (name == child.attribute("name").value()) return child;
+    }
+    return {};
+  }
+
+  // The node that feeds an input; fails where there is none.
+  pugi::xml_node Source(pugi::xml_node node, const char* name) const {
+    const pugi::xml_node input = Input(node, name);
+    const auto found = nodes_.find(input.attribute("nodename").value());
+    if (!input || found == nodes_.end()) {
+      xml_.Fail(node, fmt::format("its input '{}' names no node of the document", name));
+    }
+    return found->second;
+  }
+
+  std::vector<double> Values(pugi::xml_node node, const char* name, std::vector<double> otherwise) const {
+    const pugi::xml_node input = Input(node, name);
+    if (!input) return otherwise;
+    std::vector<double> values;
+    for (const std::string_view field : Split(input.attribute("value").value(), ',')) {
+      const std::optional<double> value = ParseDouble(field);
+      if (!value) {
+        xml_.Fail(input, fmt::format("the input '{}' is not a constant; textures and graphs are not understood", name));
+      }
+      values.push_back(*value);
+    }
+    if (values.size() != otherwise.size()) {
+      xml_.Fail(input, fmt::format("the input '{}' needs {} numbers, not {}", name, otherwise.size(), values.size()));
+    }
+    return values;
+  }
+  double Real(pugi::xml_node node, const char* name, double otherwise) const {
+    return Values(node, name, {otherwise})[0];
+  }
+  Color3 Color(pugi::xml_node node, const char* name, const Color3& otherwise) const {
+    const std::vector<double> values = Values(node, name, {otherwise[0], otherwise[1], otherwise[2]});
+    return {values[0], values[1], values[2]};
+  }
+
+  // A vector that is made of the mesh's frame by multiply, add and normalize.
+  Vec3 Vector(pugi::xml_node node, int depth = 0) const {
+    const std::string type = node.name();
+    if (type == "tangent") return {1, 0, 0};
+    if (type == "bitangent") return {0, 1, 0};
+    if (type == "normal") return {0, 0, 1};
+    if (depth > 16) xml_.Fail(node, "the graph of vectors is too deep");
+    if (type == "multiply") return Real(node, "in2", 1) * Vector(Source(node, "in1"), depth + 1);
+    if (type == "add") return Vector(Source(node, "in1"), depth + 1) + Vector(Source(node, "in2"), depth + 1);
+    if (type == "normalize") return Normalized(Vector(Source(node, "in"), depth + 1));
+    xml_.Fail(node, fmt::format("the vector node <{}> is not understood", Excerpt(type)));
+  }
+  Vec3 VectorInput(pugi::xml_node node, const char* name, const Vec3& otherwise) const {
+    return Input(node, name) ? Vector(Source(node, name)) : otherwise;
+  }
+
+  // The azimuth whose tangent, made perpendicular to the normal, is this one.
+  static double RotationOf(const Vec3& tangent, const Vec3& normal) {
+    const Vec3 flat = tangent - (tangent.z / normal.z) * normal;
+    return std::atan2(flat.y, flat.x);
+  }
+
+  void Add(pugi::xml_node node, double weight, int depth, Surface* surface) const {
+    const std::string type = node.name();
+    if (depth > 16) xml_.Fail(node, "the graph of BSDFs is too deep");
+    const double own = weight * Real(node, "weight", 1);
+    if (type == "add") {
+      Add(Source(node, "in1"), weight, depth + 1, surface);
+      Add(Source(node, "in2"), weight, depth + 1, surface);
+    } else if (type == "mix") {
+      const double mix = Real(node, "mix", 0);
+      Add(Source(node, "fg"), weight * mix, depth + 1, surface);
+      Add(Source(node, "bg"), weight * (1 - mix), depth + 1, surface);
+    } else if (type == "oren_nayar_diffuse_bsdf") {
+      if (Real(node, "roughness", 0) != 0) xml_.Fail(node, "a diffuse BSDF with a roughness is not understood");
+      const Color3 color = Color(node, "color", {0.18, 0.18, 0.18});
+      for (std::size_t c = 0; c < 3; ++c) surface->diffuse[c] += own * color[c];
+    } else if (type == "generalized_schlick_bsdf" || type == "conductor_bsdf") {
+      AddLobe(node, own, surface);
+    } else {
+      xml_.Fail(node, fmt::format("the BSDF <{}> is not understood; conductor_bsdf, generalized_schlick_bsdf, "
+                                  "oren_nayar_diffuse_bsdf, add and mix are",
+                                  Excerpt(type)));
+    }
+  }
+
+  void AddLobe(pugi::xml_node node, double weight, Surface* surface) const {
+    SurfaceLobe lobe;
+    lobe.weight = weight;
+    const std::vector<double> roughness = Values(node, "roughness", {0.05, 0.05});
+    lobe.widths = {std::clamp(roughness[0], 1e-6, 1.0), std::clamp(roughness[1], 1e-6, 1.0)};
+    lobe.normal = Normalized(VectorInput(node, "normal", {0, 0, 1}));
+    lobe.rotation = RotationOf(VectorInput(node, "tangent", {1, 0, 0}), lobe.normal);
+    if (std::string_view(node.name()) == "conductor_bsdf") {
+      lobe.fresnel.kind = SurfaceFresnel::Kind::kConductor;
+      lobe.fresnel.eta = Color(node, "ior", {0.183, 0.421, 1.373});
+      lobe.fresnel.k = Color(node, "extinction", {3.424, 2.346, 1.770});
+    } else {
+      lobe.fresnel.f0 = Color(node, "color0", {1, 1, 1});
+      lobe.fresnel.f90 = Color(node, "color90", {1, 1, 1});
+      const bool tinted = Color(node, "color82", {1, 1, 1}) != Color3{1, 1, 1} || Real(node, "exponent", 5) != 5;
+      if (tinted) xml_.Fail(node, "color82 and exponents other than 5 are not understood");
+    }
+    surface->lobes.push_back(lobe);
+  }
+
+  OpenPbr ReadOpenPbr(pugi::xml_node node) const {
+    OpenPbr parameters;
+    parameters.base_color = Color(node, "base_color", parameters.base_color);
+    parameters.metalness = Real(node, "base_metalness", 0);
+    parameters.ior = Real(node, "specular_ior", 1.5);
+    parameters.roughness = {Real(node, "specular_roughness", 0.3), Real(node, "specular_roughness_anisotropy", 0)};
+    parameters.normal = Normalized(VectorInput(node, "geometry_normal", {0, 0, 1}));
+    parameters.rotation = RotationOf(VectorInput(node, "geometry_tangent", {1, 0, 0}), parameters.normal);
+    return parameters;
+  }
+
+  XmlFile xml_;
+  std::map<std::string, pugi::xml_node> nodes_;
+};
+
+}  // namespace
+
+MaterialXDocument ReadMaterialX(std::string_view bytes, const std::filesystem::path& path) {
+  const InputFile file = {path, bytes};
+  return MaterialXReader(file).Read();
+}
+
+}  // namespace lobefit

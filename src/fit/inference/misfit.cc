@@ -1,0 +1,226 @@
+#include "lobefit/fit/inference/misfit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/fit/search/symmetric_eigen.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/math/student_t.h"
+
+namespace lobefit {
+namespace {
+
+constexpr double kLevel = 0.01;
+constexpr std::size_t kFewestSamples = 50, kFewestIncidences = 6;
+// Operations for the samples that are looked at, samples x (channels x coordinates^2 + what a sample takes anyway): a
+// few hundredths of a second.
+constexpr double kMostWork = 2e7, kWorkOfSample = 100;
+// A bin's mean over fewer independent groups has no standard error to speak of.
+constexpr double kFewestGroups = 5;
+
+// Edges between bins of each coordinate; a sample lies in one bin of each.
+constexpr std::array<double, 9> kDistance = {0.25, 0.5, 0.75, 1, 1.5, 2, 3, 5, 8};  // widths of the lobe
+constexpr std::array<double, 8> kThetaD = {10, 20, 30, 40, 50, 60, 70, 80};         // degrees
+constexpr std::array<double, 3> kThetaI = {20, 40, 60};                             // degrees
+constexpr std::size_t kSectors = 8;
+constexpr double kLeastDistance = 0.25;  // nearer to the centre the azimuth says nothing
+constexpr std::size_t kDistanceBins = kDistance.size() + 1, kThetaDBins = kThetaD.size() + 1,
+                      kThetaIBins = kThetaI.size() + 1;
+constexpr std::size_t kBins = kDistanceBins + kThetaDBins + kThetaIBins + kSectors;
+
+template <std::size_t N>
+std::size_t Place(const std::array<double, N>& edges, double x) {
+  return static_cast<std::size_t>(std::upper_bound(edges.begin(), edges.end(), x) - edges.begin());
+}
+
+template <std::size_t N>
+std::string Words(const std::array<double, N>& edges, std::size_t place, const char* name, const char* unit) {
+  if (place == 0) return fmt::format("{} below {:g}{}", name, edges[0], unit);
+  if (place == N) return fmt::format("{} above {:g}{}", name, edges[N - 1], unit);
+  return fmt::format("{} from {:g} to {:g}{}", name, edges[place - 1], edges[place], unit);
+}
+
+std::string WordsOf(std::size_t bin) {
+  if (bin < kDistanceBins)
+    return Words(kDistance, bin, "half vectors at a distance from the lobe's centre", " of its widths");
+  bin -= kDistanceBins;
+  if (bin < kThetaDBins) return Words(kThetaD, bin, "theta_d", " degrees");
+  bin -= kThetaDBins;
+  if (bin < kThetaIBins) return Words(kThetaI, bin, "theta_i", " degrees");
+  return fmt::format("half vectors towards {:.0f} degrees about the lobe's centre",
+                     360.0 * (static_cast<double>(bin - kThetaIBins) + 0.5) / kSectors);
+}
+
+// The bins of one sample; kBins stands for none.
+std::array<std::size_t, 4> BinsOf(const SlopeCoordinates& lobe, const Vec3& wi, const Vec3& wo) {
+  const Vec3 h = HalfVector(wi, wo);
+  const double* v = lobe.v;
+  // Whitened slope, y = L^-1 (slope - mean).
+  const double y1 = (-h.x / h.z - v[0]) * std::exp(-v[2]);
+  const double y2 = (-h.y / h.z - v[1] - v[3] * y1) * std::exp(-v[4]);
+  const double distance = std::hypot(y1, y2);
+  const double theta_d = RadiansToDegrees(std::acos(std::min(1.0, Dot(wi, h))));
+  const double theta_i = RadiansToDegrees(std::acos(std::min(1.0, wi.z)));
+  std::size_t sector = kBins;
+  if (distance >= kLeastDistance) {
+    const double turn = std::atan2(y2, y1) / (2 * kPi);
+    sector = kDistanceBins + kThetaDBins + kThetaIBins +
+             std::min(kSectors - 1, static_cast<std::size_t>((turn < 0 ? turn + 1 : turn) * kSectors));
+  }
+  return {Place(kDistance, distance), kDistanceBins + Place(kThetaD, theta_d),
+          kDistanceBins + kThetaDBins + Place(kThetaI, theta_i), sector};
+}
+
+// Sums over one group of samples that may depend on each other: residuals and counts a bin, and J^T r.
+struct Group {
+  std::array<double, kBins> sum = {}, count = {};
+  Eigen::VectorXd score;
+};
+
+struct Sums {
+  std::vector<Group> groups;
+  Eigen::MatrixXd hessian;            // J^T J
+  Eigen::MatrixXd bin_rows;           // bins x coordinates: sum of the rows of J in a bin
+  double squares = 0, residuals = 0;  // of all residuals, and their number
+};
+
+// Coordinates that are not held at a bound.
+std::vector<int> FreeCoordinates(const Layout& layout, const std::vector<double>& u, Eigen::Index* count) {
+  std::vector<int> place(layout.size(), -1);
+  *count = 0;
+  for (std::size_t i = 0; i < layout.size(); ++i) {
+    const Coordinate& coordinate = layout.coordinates()[i];
+    const double slack = 1e-9 * (coordinate.high - coordinate.low);
+    if (u[i] > coordinate.low + slack && u[i] < coordinate.high - slack) place[i] = static_cast<int>((*count)++);
+  }
+  return place;
+}
+
+// Of every stride-th piece of 256 samples.
+Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<double>& u, const Samples& samples,
+             const Incidences& incidences, bool by_incidence, std::size_t stride) {
+  constexpr std::size_t kPiece = 256;
+  const KernelModel kernel = layout.ToKernel(u.data());
+  Eigen::Index n = 0;
+  const std::vector<int> place = FreeCoordinates(layout, u, &n);
+  Sums sums;
+  sums.hessian.setZero(n, n);
+  sums.bin_rows.setZero(kBins, n);
+  const Group empty = {{}, {}, Eigen::VectorXd::Zero(n)};
+  if (by_incidence) sums.groups.assign(incidences.wi.size(), empty);
+  std::vector<std::vector<double>> columns;
+  Eigen::VectorXd row(n), rows(n);
+  for (std::size_t begin = 0; begin < problem.size(); begin += kPiece * stride) {
+    const std::size_t count = std::min(problem.size(), begin + kPiece) - begin;
+    Columns(problem.kernel_samples(), kernel, begin, begin + count, &columns);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!by_incidence) sums.groups.push_back(empty);
+      Group& group = by_incidence ? sums.groups[incidences.group[begin + i]] : sums.groups.back();
+      double residual = 0;
+      rows.setZero();
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const double* value = columns[c].data() + i;
+        row.setZero();
+        std::size_t j = 0;
+        for (; j < layout.shape_size(); ++j) {
+          if (place[j] >= 0) row(place[j]) += value[j * count];
+        }
+        for (const Layout::Linear& linear : layout.linear(c)) {
+          const int to = linear.index < 0 ? -1 : place[static_cast<std::size_t>(linear.index)];
+          if (to >= 0) row(to) += value[j * count];
+          ++j;
+        }
+        const double r = value[j * count];
+        residual += r;
+        sums.squares += r * r;
+        sums.residuals += 1;
+        rows += row;
+        group.score += r * row;
+        sums.hessian.selfadjointView<Eigen::Upper>().rankUpdate(row);
+      }
+      for (const std::size_t bin : BinsOf(kernel.lobes.front().shape, samples.wi(begin + i), samples.wo(begin + i))) {
+        if (bin == kBins) continue;
+        group.sum[bin] += residual;
+        group.count[bin] += 1;
+        sums.bin_rows.row(static_cast<Eigen::Index>(bin)) += rows.transpose();
+      }
+    }
+  }
+  sums.hessian = Eigen::MatrixXd(sums.hessian.selfadjointView<Eigen::Upper>());
+  return sums;
+}
+
+// H^-1 without the directions that the data do not determine.
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& hessian) {
+  if (hessian.size() == 0) return hessian;
+  const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 1.0; });
+  const SymmetricEigen eigen = DecomposeSymmetric(scale.asDiagonal() * hessian * scale.asDiagonal());
+  const Eigen::VectorXd inverse = eigen.values.unaryExpr([](double x) { return x > 1e-10 ? 1 / x : 0.0; });
+  const Eigen::MatrixXd half = scale.asDiagonal() * eigen.vectors;
+  return half * inverse.asDiagonal() * half.transpose();
+}
+
+}  // namespace
+
+Misfit TestMisfit(const Problem& problem, const Layout& layout, const std::vector<double>& u, const Samples& samples,
+                  const Incidences& incidences) {
+  Misfit misfit;
+  if (problem.size() < kFewestSamples) return misfit;
+  const std::size_t columns = layout.shape_size() + 3;
+  const double work = static_cast<double>(problem.size()) *
+                      (static_cast<double>(problem.channels() * columns * columns) + kWorkOfSample);
+  const auto stride = static_cast<std::size_t>(std::ceil(work / kMostWork));
+  const bool by_incidence = incidences.wi.size() >= kFewestIncidences;
+  const Sums sums = SumBins(problem, layout, u, samples, incidences, by_incidence, stride);
+  const double rms = std::sqrt(sums.squares / sums.residuals);
+  if (!(rms > 1e-9)) return misfit;
+  // The noise of all samples moves the parameters and with them the mean of a bin: a bin's sum is that of its residuals
+  // less what they moved it.
+  const Eigen::MatrixXd moved = sums.bin_rows * Inverse(sums.hessian);
+  double least = 1;
+  std::size_t tested = 0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    std::vector<double> cells;
+    double sum = 0, count = 0, count2 = 0, residual = 0;
+    for (const Group& group : sums.groups) {
+      cells.push_back(group.sum[bin] - moved.row(static_cast<Eigen::Index>(bin)).dot(group.score));
+      sum += cells.back();
+      residual += group.sum[bin];
+      count += group.count[bin];
+      count2 += group.count[bin] * group.count[bin];
+    }
+    if (!(count > 0)) continue;
+    const double groups = count * count / count2, mean = sum / count;
+    if (groups < kFewestGroups) continue;
+    ++tested;
+    double variance = 0;
+    for (std::size_t g = 0; g < cells.size(); ++g) {
+      const double excess = cells[g] - mean * sums.groups[g].count[bin];
+      variance += excess * excess;
+    }
+    variance *= groups / (groups - 1);
+    const double t = sum / std::sqrt(variance);
+    const double probability = std::isfinite(t) ? 2 * StudentTCdf(-std::fabs(t), groups - 1) : 1;
+    if (probability >= least) continue;
+    least = probability;
+    misfit.where = WordsOf(bin);
+    misfit.size = residual / count / (rms * static_cast<double>(problem.channels()));
+  }
+  misfit.tested = tested > 0;
+  misfit.probability = std::min(1.0, least * static_cast<double>(tested));
+  misfit.flagged = misfit.tested && misfit.probability < kLevel;
+  return misfit;
+}
+
+std::string ToRemark(const Misfit& misfit) {
+  return fmt::format(
+      "misfit: the residuals are structured: their mean over {} is {:.2f} of their spread, which noise explains with "
+      "probability {:.1g}; the model is not quite the one behind the data, and its intervals are too narrow",
+      misfit.where, misfit.size, misfit.probability);
+}
+
+}  // namespace lobefit

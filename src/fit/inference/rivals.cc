@@ -1,0 +1,107 @@
+#include "lobefit/fit/inference/rivals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/measurement/incidence.h"
+
+namespace lobefit {
+namespace {
+
+// 95 % of chi-square with one degree of freedom.
+constexpr double kLikelihoodRatio = 3.841458820694124;
+constexpr double kSigmas = 2;
+
+// The largest cost that fits as well as the best.
+double AsGood(const Problem& problem, const Layout& layout, double best) {
+  const auto residuals = static_cast<double>(problem.size() * problem.channels());
+  const double variance = 2 * best / std::max(1.0, residuals - static_cast<double>(layout.size()));
+  // Of values without noise nothing but rounding is left: residuals of 1e-12 on average.
+  return best + kLikelihoodRatio / 2 * variance + 1e-24 * residuals;
+}
+
+// The lobe seen in the vertical mirror through `azimuth`.
+Ellipsoid Mirrored(const Ellipsoid& ellipsoid, double azimuth) {
+  const OffCenter lobe = OffCenterFromEllipsoid(ellipsoid);
+  const double c = std::cos(2 * azimuth), s = std::sin(2 * azimuth);
+  // R = [[c, s], [s, -c]]: slopes go to R s, Q^-1 to R Q^-1 R.
+  return EllipsoidFromOffCenter({c * lobe.slope_x + s * lobe.slope_y, s * lobe.slope_x - c * lobe.slope_y,
+                                 c * c * lobe.q11 + 2 * c * s * lobe.q12 + s * s * lobe.q22,
+                                 c * s * (lobe.q11 - lobe.q22) + (s * s - c * c) * lobe.q12,
+                                 s * s * lobe.q11 - 2 * c * s * lobe.q12 + c * c * lobe.q22});
+}
+
+std::vector<double> MirrorImage(const Layout& layout, const std::vector<double>& u, double azimuth) {
+  const ParameterValues values = layout.Report(u.data());
+  std::vector<Ellipsoid> shapes;
+  for (std::size_t l = 0; l < layout.recipe().model.lobes.size(); ++l) {
+    const std::vector<double>* p = values.data() + FirstParameter(layout.recipe().model, l);
+    shapes.push_back(Mirrored({p[0][0], p[1][0], p[2][0], p[3][0], p[4][0]}, azimuth));
+  }
+  std::vector<double> image = layout.FromShapes(shapes);
+  std::copy(u.begin() + static_cast<std::ptrdiff_t>(layout.shape_size()), u.end(),
+            image.begin() + static_cast<std::ptrdiff_t>(layout.shape_size()));
+  return image;
+}
+
+// Parameters that the rival puts elsewhere, in words; empty where it is the same solution. They lose their standard
+// errors.
+std::string Differences(const Layout& layout, const std::vector<double>& u, Material* material) {
+  const ParameterValues values = layout.Report(u.data());
+  const std::vector<Parameter> parameters = Parameters(material->model);
+  std::vector<std::string> words;
+  std::vector<std::size_t> differing;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    FittedParameter& fitted = material->parameters[i];
+    if (!fitted.free || parameters[i].group != ParameterGroup::kShape) continue;
+    const double sigma = std::max(fitted.standard_error[0], std::isnan(fitted.standard_error_clustered[0])
+                                                                ? fitted.standard_error[0]
+                                                                : fitted.standard_error_clustered[0]);
+    double gap = values[i][0] - fitted.values[0];
+    if (parameters[i].name.ends_with("theta_z")) gap = std::remainder(gap, kPi);
+    if (!(std::fabs(gap) > kSigmas * sigma)) continue;
+    differing.push_back(i);
+    words.push_back(fmt::format("{} {:.4g} in place of {:.4g}", parameters[i].json_name,
+                                values[i][0] / InsideFactor(parameters[i]),
+                                fitted.values[0] / InsideFactor(parameters[i])));
+  }
+  for (const std::size_t i : differing) {
+    material->parameters[i].standard_error =
+        material->parameters[i].standard_error_clustered = {std::numeric_limits<double>::quiet_NaN()};
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace
+
+bool FlagRivals(const Problem& problem, const Layout& layout, const Samples& samples,
+                const std::vector<DistinctMinimum>& minima, ThreadPool* pool, Material* material) {
+  const Solution& best = minima[0].solution;
+  const double as_good = AsGood(problem, layout, best.cost);
+  std::vector<std::string> found;
+  if (const std::optional<double> plane = PlaneAzimuth(samples)) {
+    const std::vector<double> image = MirrorImage(layout, best.u, *plane);
+    if (problem.Sum(layout.ToKernel(image.data()), false, pool).sum_rho / 2 <= as_good) {
+      if (const std::string words = Differences(layout, image, material); !words.empty())
+        found.push_back("all samples lie in one plane, and the mirror image of the solution fits as well: " + words);
+    }
+  }
+  for (std::size_t k = 1; k < minima.size(); ++k) {
+    const Solution& rival = minima[k].solution;
+    if (!minima[k].on_all_samples || !rival.converged || rival.cost > as_good) continue;
+    if (const std::string words = Differences(layout, rival.u, material); !words.empty())
+      found.push_back("a second minimum fits as well: " + words);
+  }
+  material->degenerate.insert(material->degenerate.end(), found.begin(), found.end());
+  return !found.empty();
+}
+
+}  // namespace lobefit

@@ -1,0 +1,272 @@
+#include "lobefit/fit/objective/coordinates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lobefit/base/error.h"
+#include "lobefit/math/vec.h"
+
+namespace lobefit {
+namespace {
+
+constexpr const char* kSlopeNames[] = {"slope_x", "slope_y", "ln a", "b", "ln c"};
+// Slopes of 10 are normals 84 degrees from the surface's; widths from 1e-4 (a mirror) to 10 (nearly uniform over the
+// hemisphere).
+constexpr double kSlopeLow[] = {-10, -10, -9.2103403719761836, -10, -9.2103403719761836};
+constexpr double kSlopeHigh[] = {10, 10, 2.302585092994046, 10, 2.302585092994046};
+
+double* Entry(Ellipsoid* ellipsoid, int i) {
+  double* entries[] = {&ellipsoid->alpha_x, &ellipsoid->alpha_y, &ellipsoid->theta_x, &ellipsoid->theta_y,
+                       &ellipsoid->theta_z};
+  return entries[i];
+}
+
+}  // namespace
+
+Layout::Layout(const Recipe& recipe, const std::vector<std::string>& channels)
+    : recipe_(recipe), channels_(channels.size()), linear_(channels.size()) {
+  const std::vector<Parameter> parameters = Parameters(recipe.model);
+  for (std::size_t lobe = 0; lobe < recipe.model.lobes.size(); ++lobe) {
+    AddShape(lobe, parameters, FirstParameter(recipe.model, lobe));
+  }
+  shape_size_ = coordinates_.size();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].group != ParameterGroup::kShape) AddLinear(parameters[i], recipe.parameters[i], channels);
+  }
+  if (coordinates_.empty())
+    throw InputError("recipe '" + recipe.name + "': every parameter is fixed; free at least one");
+}
+
+void Layout::AddShape(std::size_t lobe, const std::vector<Parameter>& parameters, std::size_t first_parameter) {
+  Shape shape;
+  shape.first = coordinates_.size();
+  const Ndf ndf = recipe_.model.lobes[lobe].ndf;
+  shape.tied = IsRound(ndf);
+  if (ndf == Ndf::kGgxTilted) shape.fixed[4] = -recipe_.plane_azimuth;
+  bool restricted = shape.tied;
+  for (std::size_t i = 0; i < 5; ++i) {
+    const ParameterRecipe& entry = recipe_.parameters[first_parameter + i];
+    if (!entry.fixed.empty()) shape.fixed[i] = entry.fixed[0];
+    restricted = restricted || !entry.fixed.empty() || entry.low || entry.high;
+  }
+  const std::string prefix = lobe == 0 ? "" : "lobe" + std::to_string(lobe + 1) + ".";
+  shape.slope = !restricted;
+  if (shape.slope) {
+    shape.entries = IsTilted(ndf) ? std::vector<int>{0, 1, 2, 3, 4} : std::vector<int>{2, 3, 4};
+    for (const int i : shape.entries) coordinates_.push_back({prefix + kSlopeNames[i], kSlopeLow[i], kSlopeHigh[i]});
+  } else {
+    for (int i = 0; i < 5; ++i) {
+      const Parameter& parameter = parameters[first_parameter + static_cast<std::size_t>(i)];
+      const ParameterRecipe& entry = recipe_.parameters[first_parameter + static_cast<std::size_t>(i)];
+      if (!parameter.free || !entry.fixed.empty()) continue;
+      const double low = entry.low.value_or(parameter.low), high = entry.high.value_or(parameter.high);
+      shape.entries.push_back(i);
+      if (i < 2) {
+        coordinates_.push_back({"ln " + parameter.name, std::log(low), std::log(high)});
+      } else {
+        coordinates_.push_back({parameter.name, low, high});
+      }
+    }
+  }
+  shapes_.push_back(shape);
+}
+
+void Layout::AddLinear(const Parameter& parameter, const ParameterRecipe& entry,
+                       const std::vector<std::string>& channels) {
+  const double low = entry.low.value_or(parameter.low), high = entry.high.value_or(parameter.high);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    Linear linear;
+    linear.start = entry.start.empty() ? parameter.start : entry.start[std::min(c, entry.start.size() - 1)];
+    if (!entry.fixed.empty()) {
+      if (entry.fixed.size() != 1 && entry.fixed.size() != channels_) {
+        throw InputError("recipe '" + recipe_.name + "': '" + parameter.json_name + "' is fixed to " +
+                         std::to_string(entry.fixed.size()) + " values, the measurement has " +
+                         std::to_string(channels_) + " channels");
+      }
+      linear.value = entry.fixed[entry.fixed.size() == 1 ? 0 : c];
+    } else if (entry.shared && c > 0) {
+      linear.index = linear_[0].back().index;
+    } else {
+      linear.index = static_cast<int>(coordinates_.size());
+      coordinates_.push_back({parameter.name + (entry.shared ? "" : "[" + channels[c] + "]"), low, high});
+    }
+    linear_[c].push_back(linear);
+  }
+}
+
+Ellipsoid Layout::EllipsoidAt(const Shape& shape, const double* u) const {
+  Ellipsoid ellipsoid = {shape.fixed[0], shape.fixed[1], shape.fixed[2], shape.fixed[3], shape.fixed[4]};
+  for (std::size_t k = 0; k < shape.entries.size(); ++k) {
+    const int i = shape.entries[k];
+    *Entry(&ellipsoid, i) = i < 2 ? std::exp(u[shape.first + k]) : u[shape.first + k];
+  }
+  if (shape.tied) ellipsoid.alpha_y = ellipsoid.alpha_x;
+  return ellipsoid;
+}
+
+SlopeCoordinates Layout::SlopeAt(const Shape& shape, const double* u) const {
+  SlopeCoordinates slope;
+  for (std::size_t k = 0; k < shape.entries.size(); ++k) slope.v[shape.entries[k]] = u[shape.first + k];
+  return slope;
+}
+
+KernelModel Layout::ToKernel(const double* u) const {
+  KernelModel kernel;
+  kernel.transform = TransformOf(recipe_.metric);
+  kernel.loss = recipe_.loss;
+  kernel.loss_scale = recipe_.loss_scale;
+  kernel.diffuse_kind = recipe_.model.diffuse;
+  kernel.channels = channels_;
+  std::size_t first_linear = 0;
+  for (std::size_t l = 0; l < shapes_.size(); ++l) {
+    const Shape& shape = shapes_[l];
+    KernelLobe lobe;
+    lobe.kind = recipe_.model.lobes[l];
+    lobe.columns = shape.entries.size();
+    lobe.jacobian.assign(5 * lobe.columns, 0.0);
+    if (shape.slope) {
+      lobe.shape = SlopeAt(shape, u);
+      for (std::size_t k = 0; k < lobe.columns; ++k)
+        lobe.jacobian[static_cast<std::size_t>(shape.entries[k]) * lobe.columns + k] = 1;
+    } else {
+      const Ellipsoid ellipsoid = EllipsoidAt(shape, u);
+      double jacobian[25];
+      lobe.shape = SlopeCoordinatesFromEllipsoid(ellipsoid, jacobian);
+      for (std::size_t j = 0; j < 5; ++j) {
+        for (std::size_t k = 0; k < lobe.columns; ++k) {
+          const int i = shape.entries[k];
+          double derivative = jacobian[5 * j + static_cast<std::size_t>(i)];
+          if (i == 0 && shape.tied) derivative += jacobian[5 * j + 1];
+          if (i == 0) derivative *= ellipsoid.alpha_x;
+          if (i == 1) derivative *= ellipsoid.alpha_y;
+          lobe.jacobian[j * lobe.columns + k] = derivative;
+        }
+      }
+    }
+    const std::size_t size = FresnelParameters(lobe.kind.fresnel);
+    for (std::size_t c = 0; c < channels_; ++c) {
+      for (std::size_t k = 0; k < size; ++k) lobe.fresnel.push_back(Value(linear_[c][first_linear + k], u));
+    }
+    first_linear += size;
+    kernel.lobes.push_back(lobe);
+  }
+  for (std::size_t c = 0; recipe_.model.diffuse != Diffuse::kNone && c < channels_; ++c)
+    kernel.diffuse.push_back(Value(linear_[c].back(), u));
+  return kernel;
+}
+
+std::vector<double> Layout::FromShapes(const std::vector<Ellipsoid>& shapes) const {
+  std::vector<double> u(size(), 0.0);
+  for (std::size_t l = 0; l < shapes_.size(); ++l) {
+    Ellipsoid ellipsoid = shapes[l];
+    const SlopeCoordinates slope = SlopeCoordinatesFromEllipsoid(ellipsoid);
+    for (std::size_t k = 0; k < shapes_[l].entries.size(); ++k) {
+      const int i = shapes_[l].entries[k];
+      const double entry = *Entry(&ellipsoid, i);
+      u[shapes_[l].first + k] = shapes_[l].slope ? slope.v[i] : (i < 2 ? std::log(entry) : entry);
+    }
+  }
+  for (const std::vector<Linear>& channel : linear_) {
+    for (const Linear& linear : channel) {
+      if (linear.index >= 0) u[static_cast<std::size_t>(linear.index)] = linear.start;
+    }
+  }
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] = std::clamp(u[i], coordinates_[i].low, coordinates_[i].high);
+  return u;
+}
+
+void Layout::Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const {
+  const auto n = static_cast<Eigen::Index>(size());
+  hessian->setZero(n, n);
+  gradient->setZero(n);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    // Coordinate of each column of this channel; -1 for a fixed one, -2 for the residual.
+    std::vector<int> index;
+    for (std::size_t k = 0; k < shape_size_; ++k) index.push_back(static_cast<int>(k));
+    for (const Linear& linear : linear_[c]) index.push_back(linear.index);
+    index.push_back(-2);
+    const double* entry = sums.gram[c].data();
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      for (std::size_t j = i; j < index.size(); ++j, ++entry) {
+        if (index[i] < 0) continue;
+        if (index[j] == -2) {
+          (*gradient)(index[i]) += *entry;
+        } else if (index[j] >= 0) {
+          (*hessian)(index[i], index[j]) += *entry;
+          // A shared amplitude may meet itself in one channel only on the diagonal.
+          if (i != j) (*hessian)(index[j], index[i]) += *entry;
+        }
+      }
+    }
+  }
+}
+
+std::vector<std::vector<double>> Layout::GatherScores(const std::vector<std::vector<double>>& scores) const {
+  const std::size_t count = scores.empty() ? 0 : scores[0].size();
+  std::vector<std::vector<double>> gathered(size(), std::vector<double>(count, 0.0));
+  const auto add = [&](const std::vector<double>& from, std::size_t to) {
+    for (std::size_t i = 0; i < count; ++i) gathered[to][i] += from[i];
+  };
+  for (std::size_t k = 0; k < shape_size_; ++k) add(scores[k], k);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    for (std::size_t k = 0; k < linear_[c].size(); ++k) {
+      if (linear_[c][k].index >= 0)
+        add(scores[shape_size_ + c * linear_[c].size() + k], static_cast<std::size_t>(linear_[c][k].index));
+    }
+  }
+  return gathered;
+}
+
+ParameterValues Layout::Report(const double* u) const {
+  ParameterValues values;
+  std::size_t next = 0;
+  const auto add_linear = [&] {
+    std::vector<double> entries;
+    for (std::size_t c = 0; c < channels_; ++c) entries.push_back(Value(linear_[c][next], u));
+    values.push_back(entries);
+    ++next;
+  };
+  for (std::size_t l = 0; l < shapes_.size(); ++l) {
+    const Shape& shape = shapes_[l];
+    Ellipsoid ellipsoid = shape.slope ? EllipsoidFromSlopeCoordinates(SlopeAt(shape, u)) : EllipsoidAt(shape, u);
+    for (int i = 0; i < 5; ++i) values.push_back({*Entry(&ellipsoid, i)});
+    for (std::size_t k = 0; k < FresnelParameters(recipe_.model.lobes[l].fresnel); ++k) add_linear();
+  }
+  if (recipe_.model.diffuse != Diffuse::kNone) add_linear();
+  return values;
+}
+
+Eigen::MatrixXd Layout::ReportJacobian(const double* u) const {
+  const std::size_t rows = shapes_.size() * kShapeParameters + linear_[0].size() * channels_;
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(size()));
+  Eigen::Index row = 0;
+  std::size_t next = 0;
+  const auto add_linear = [&] {
+    for (std::size_t c = 0; c < channels_; ++c, ++row) {
+      if (linear_[c][next].index >= 0) jacobian(row, linear_[c][next].index) = 1;
+    }
+    ++next;
+  };
+  for (std::size_t l = 0; l < shapes_.size(); ++l) {
+    const Shape& shape = shapes_[l];
+    double slope_jacobian[25];
+    if (shape.slope) EllipsoidFromSlopeCoordinates(SlopeAt(shape, u), slope_jacobian);
+    Ellipsoid ellipsoid = EllipsoidAt(shape, u);
+    for (std::size_t k = 0; k < shape.entries.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(shape.first + k);
+      const int i = shape.entries[k];
+      if (shape.slope) {
+        for (int j = 0; j < 5; ++j) jacobian(row + j, column) = slope_jacobian[5 * j + i];
+      } else {
+        jacobian(row + i, column) = i < 2 ? *Entry(&ellipsoid, i) : 1.0;
+        if (i == 0 && shape.tied) jacobian(row + 1, column) = ellipsoid.alpha_y;
+      }
+    }
+    row += 5;
+    for (std::size_t k = 0; k < FresnelParameters(recipe_.model.lobes[l].fresnel); ++k) add_linear();
+  }
+  if (recipe_.model.diffuse != Diffuse::kNone) add_linear();
+  return jacobian;
+}
+
+}  // namespace lobefit

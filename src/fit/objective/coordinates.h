@@ -1,0 +1,92 @@
+// The solver's coordinates: which numbers Ceres moves, and how they become a model, and how they are reported.
+//
+// Shape. A free ellipsoid moves in slope coordinates (off_center.h), which cover it once and without singularities.
+// Where the choice of NDF or the recipe fixes, bounds or ties single angles or alphas, the lobe moves in ln alpha and
+// the angles that are left. Fresnel parameters and diffuse albedos are coordinates of their own, one a channel or one
+// for all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "lobefit/fit/objective/kernel.h"
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+
+struct Coordinate {
+  std::string name;  // for messages: "ln alpha_x", "f0[R]"
+  double low, high;  // bounds of the solver
+};
+
+class Layout {
+ public:
+  // Throws InputError where nothing is left to fit.
+  Layout(const Recipe& recipe, const std::vector<std::string>& channels);
+
+  std::size_t size() const { return coordinates_.size(); }
+  const std::vector<Coordinate>& coordinates() const { return coordinates_; }
+  std::size_t channels() const { return channels_; }
+  // Coordinates [0, shape_size()) belong to shapes, lobe by lobe; the rest are Fresnel parameters and albedos.
+  std::size_t shape_size() const { return shape_size_; }
+  const Recipe& recipe() const { return recipe_; }
+  // True where the lobe moves in slope coordinates.
+  bool in_slope_space(std::size_t lobe) const { return shapes_[lobe].slope; }
+
+  // The model at `u`, with the Jacobians of the shapes.
+  KernelModel ToKernel(const double* u) const;
+
+  // Coordinates of lobe shapes given as ellipsoids, Fresnel parameters and albedos at the start that the recipe or the
+  // parameter table gives; fixed ones are ignored, all are moved into the bounds.
+  std::vector<double> FromShapes(const std::vector<Ellipsoid>& shapes) const;
+
+  // Gauss-Newton matrix J^T J and gradient J^T r in solver coordinates from the sums over samples.
+  void Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
+  // Scores of the kernel (shape columns, then [channel][linear]) as scores of the solver's coordinates, arrays by
+  // coordinate.
+  std::vector<std::vector<double>> GatherScores(const std::vector<std::vector<double>>& scores) const;
+
+  // Entry of a Fresnel parameter or albedo in the solver's coordinates; -1: fixed, then `value`. Most enter f_r
+  // linearly.
+  struct Linear {
+    int index = -1;
+    double value = 0;
+    double start = 0;
+  };
+  // Those of a channel: the lobes' Fresnel parameters, then the diffuse albedo if the model has one.
+  const std::vector<Linear>& linear(std::size_t channel) const { return linear_[channel]; }
+
+  // Reported values at `u`, inside units, in the order of Parameters(model).
+  ParameterValues Report(const double* u) const;
+  // d(reported entry) / d(coordinate), rows over the flattened entries of Report. Rows of a lobe whose angles are not
+  // differentiable (equal alphas) are NaN.
+  Eigen::MatrixXd ReportJacobian(const double* u) const;
+
+ private:
+  struct Shape {
+    bool slope = false;                 // slope coordinates, else ln alpha and angles
+    std::vector<int> entries;           // slope coordinates, or ellipsoid parameters, that are free
+    bool tied = false;                  // alpha_y follows alpha_x
+    double fixed[5] = {1, 1, 0, 0, 0};  // ellipsoid parameters that are not free
+    std::size_t first = 0;              // first coordinate
+  };
+
+  void AddShape(std::size_t lobe, const std::vector<Parameter>& parameters, std::size_t first_parameter);
+  void AddLinear(const Parameter& parameter, const ParameterRecipe& entry, const std::vector<std::string>& channels);
+  double Value(const Linear& linear, const double* u) const {
+    return linear.index < 0 ? linear.value : u[linear.index];
+  }
+  Ellipsoid EllipsoidAt(const Shape& shape, const double* u) const;
+  SlopeCoordinates SlopeAt(const Shape& shape, const double* u) const;
+
+  Recipe recipe_;
+  std::size_t channels_;
+  std::size_t shape_size_ = 0;
+  std::vector<Coordinate> coordinates_;
+  std::vector<Shape> shapes_;
+  std::vector<std::vector<Linear>> linear_;
+};
+
+}  // namespace lobefit

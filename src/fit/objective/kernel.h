@@ -1,0 +1,86 @@
+// The inner loop of a fit: streams samples in SIMD blocks and keeps only sums, so that no residual and no Jacobian is
+// ever stored. Includes neither Ceres nor Eigen (platform: they must not meet instruction-set flags).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lobefit/core/brdf/lobe.h"
+#include "lobefit/core/brdf/model.h"
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+
+// How a value v = f cos_theta_i or f becomes a residual against the measured one.
+enum class Transform { kLog1p, kCubeRoot, kLinear, kRelative };
+
+Transform TransformOf(Metric metric);
+
+// Samples as the loop reads them, in place: what follows from them (transformed values, weights) is computed anew in
+// every pass, so that a fit needs no memory that grows with their number.
+struct KernelSamples {
+  const double* direction[6];           // wi_x, wi_y, wi_z, wo_x, wo_y, wo_z
+  std::vector<const double*> measured;  // f_r[c][i]
+  // The weight of a squared residual is weight_scale times these; null: 1.
+  const double* weight = nullptr;
+  const double* solid_angle = nullptr;
+  bool sin_i = false, sin_o = false;  // times the sine of the polar angle
+  double weight_scale = 1;
+  std::size_t count = 0;
+};
+
+// target = T(f_r), kRelative: f_r itself; by the same instructions as the loop.
+void TransformMeasured(Transform transform, const double* f_r, const double* cos_theta_i, std::size_t count,
+                       double* target);
+
+struct KernelLobe {
+  Lobe kind;
+  SlopeCoordinates shape;
+  std::vector<double> fresnel;  // [channel][FresnelParameters(kind.fresnel)]
+  // d(slope coordinates) / d(solver's shape coordinates), 5 x columns row-major.
+  std::size_t columns = 0;
+  std::vector<double> jacobian;
+};
+
+struct KernelModel {
+  std::vector<KernelLobe> lobes;
+  std::vector<double> diffuse;  // albedo a channel; empty: no diffuse part
+  Diffuse diffuse_kind = Diffuse::kLambert;
+  std::size_t channels = 1;
+  Transform transform = Transform::kLog1p;
+  Loss loss = Loss::kNone;
+  double loss_scale = 1;
+
+  std::size_t shape_columns() const;
+  // Columns of one channel: shape coordinates of all lobes, Fresnel parameters lobe by lobe, the diffuse albedo, the
+  // residual.
+  std::size_t columns() const;
+};
+
+// Sums over samples. gram[c] is the upper triangle, row by row, of the Gram matrix of channel c's columns.
+struct KernelSums {
+  double sum_rho = 0;  // sum over samples of rho(sum over channels of weighted squared residuals)
+  std::vector<std::vector<double>> gram;
+  double sum_robust_weight = 0;  // sum of rho'; equals the count without a loss
+};
+
+// Adds the samples [begin, end) to `sums`; without `gradient` only sum_rho. The order of additions depends on begin and
+// end only.
+void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gradient, std::size_t begin,
+                std::size_t end, KernelSums* sums);
+
+// Rows of J^T r a sample, for sandwich estimates: scores[j][i - begin] with j over shape columns, then
+// [channel][columns of that channel].
+void Scores(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+            std::vector<std::vector<double>>* scores);
+
+// The weighted Jacobian and the residuals themselves: columns[c][j * (end - begin) + i - begin] with j over the columns
+// of KernelModel, the last one the residual.
+void Columns(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+             std::vector<std::vector<double>>* columns);
+
+// f_r of the model: values[c][i - begin].
+void ModelValues(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+                 std::vector<std::vector<double>>* values);
+
+}  // namespace lobefit

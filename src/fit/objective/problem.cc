@@ -1,0 +1,117 @@
+#include "lobefit/fit/objective/problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lobefit/base/error.h"
+
+namespace lobefit {
+namespace {
+
+// At most 64 runs: enough to share work among the threads of one machine; at least 1024 samples a run.
+constexpr std::size_t kMaxRuns = 64;
+constexpr std::size_t kMinRun = 1024;
+
+double Sine(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
+
+}  // namespace
+
+std::size_t RunCount(std::size_t count) { return std::clamp<std::size_t>(count / kMinRun, 1, kMaxRuns); }
+std::size_t RunBegin(std::size_t count, std::size_t run) {
+  // Whole blocks of 256 samples, so that only the last one is padded.
+  const std::size_t blocks = (count + 255) / 256;
+  return std::min(count, blocks * run / RunCount(count) * 256);
+}
+
+void SetAsideForRecipe(const Recipe& recipe, Measurement* measurement) {
+  Samples& samples = measurement->samples;
+  const double cos_max = recipe.theta_max >= kPi / 2 - 1e-9 ? 0.0 : std::cos(recipe.theta_max + 1e-9);
+  std::vector<std::uint8_t> keep(samples.size(), 1);
+  std::size_t beyond = 0, negative = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.wi_z[i] < cos_max || samples.wo_z[i] < cos_max) {
+      keep[i] = 0;
+      ++beyond;
+    }
+  }
+  const Transform transform = TransformOf(recipe.metric);
+  if (transform == Transform::kLog1p || transform == Transform::kRelative) {
+    for (const std::vector<double>& values : samples.values) {
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        const bool bad = transform == Transform::kLog1p ? values[i] * samples.wi_z[i] <= -1 : values[i] <= 0;
+        if (bad && keep[i] != 0) {
+          keep[i] = 0;
+          ++negative;
+        }
+      }
+    }
+  }
+  if (beyond + negative == 0) return;
+  if (beyond + negative == samples.size()) {
+    throw InputError(measurement->source + ": none of its " + std::to_string(samples.size()) +
+                     " usable samples can be fitted: " + std::to_string(beyond) + " are beyond the angle limit, " +
+                     std::to_string(negative) +
+                     " are negative where the metric needs positive values; use --theta-max or another --metric");
+  }
+  samples.Keep(keep);
+  if (beyond > 0) measurement->set_aside.Add(SetAsideReason::kBeyondAngleLimit, beyond);
+  if (negative > 0) measurement->set_aside.Add(SetAsideReason::kNegative, negative);
+}
+
+Weighting EffectiveWeighting(Weighting weighting, const Samples& samples) {
+  if (weighting != Weighting::kAuto) return weighting;
+  return samples.solid_angle.empty() ? Weighting::kCells : Weighting::kSolidAngle;
+}
+
+void SetDirections(const Samples& samples, KernelSamples* kernel) {
+  const std::vector<double>* arrays[] = {&samples.wi_x, &samples.wi_y, &samples.wi_z,
+                                         &samples.wo_x, &samples.wo_y, &samples.wo_z};
+  for (std::size_t k = 0; k < 6; ++k) kernel->direction[k] = arrays[k]->data();
+  kernel->count = samples.size();
+}
+
+Problem::Problem(const Samples& samples, const Recipe& recipe) {
+  SetDirections(samples, &kernel_);
+  for (const std::vector<double>& values : samples.values) kernel_.measured.push_back(values.data());
+  const bool by_solid_angle = EffectiveWeighting(recipe.weighting, samples) == Weighting::kSolidAngle;
+  if (by_solid_angle && samples.solid_angle.empty()) {
+    throw InputError(
+        "weighting 'solid-angle': this format lists directions without cells, so their solid angles are not known; use "
+        "--weighting cells");
+  }
+  kernel_.sin_i = recipe.metric == Metric::kNgan || recipe.metric == Metric::kLowLog;
+  kernel_.sin_o = recipe.metric == Metric::kNgan;
+  if (!samples.weight.empty()) kernel_.weight = samples.weight.data();
+  if (by_solid_angle) kernel_.solid_angle = samples.solid_angle.data();
+  if (kernel_.weight == nullptr && !by_solid_angle && !kernel_.sin_i) return;
+  // Weights of mean 1.
+  double sum = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    double weight = samples.weight.empty() ? 1.0 : samples.weight[i];
+    if (by_solid_angle) weight *= samples.solid_angle[i];
+    if (kernel_.sin_i) weight *= Sine(samples.wi_z[i]);
+    if (kernel_.sin_o) weight *= Sine(samples.wo_z[i]);
+    sum += weight;
+  }
+  if (!(sum > 0)) throw InputError("all weights of the samples are zero; choose another --metric or --weighting");
+  kernel_.weight_scale = static_cast<double>(samples.size()) / sum;
+}
+
+KernelSums Problem::Sum(const KernelModel& model, bool gradient, ThreadPool* pool) const {
+  const std::size_t runs = RunCount(size());
+  std::vector<KernelSums> partial(runs);
+  pool->Run(runs, [&](std::size_t run) {
+    Accumulate(kernel_, model, gradient, RunBegin(size(), run), RunBegin(size(), run + 1), &partial[run]);
+  });
+  KernelSums total = std::move(partial[0]);
+  for (std::size_t run = 1; run < runs; ++run) {
+    total.sum_rho += partial[run].sum_rho;
+    total.sum_robust_weight += partial[run].sum_robust_weight;
+    for (std::size_t c = 0; gradient && c < total.gram.size(); ++c) {
+      for (std::size_t k = 0; k < total.gram[c].size(); ++k) total.gram[c][k] += partial[run].gram[c][k];
+    }
+  }
+  return total;
+}
+
+}  // namespace lobefit

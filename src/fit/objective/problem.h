@@ -1,0 +1,46 @@
+// Samples made ready for the kernel under one recipe, and sums over them on several threads.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lobefit/base/parallel.h"
+#include "lobefit/fit/objective/kernel.h"
+#include "lobefit/measurement/measurement.h"
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+
+// Sets the samples aside that the recipe's metric cannot take: beyond the angle limit; values that the transform has no
+// number for (log: 1 + f cos_theta_i <= 0; relative: f <= 0). Throws InputError where none is left.
+void SetAsideForRecipe(const Recipe& recipe, Measurement* measurement);
+
+// kAuto turned into what it means for these samples.
+Weighting EffectiveWeighting(Weighting weighting, const Samples& samples);
+
+// Keeps references to `samples`, which must outlive it.
+class Problem {
+ public:
+  // `weighting` and metric from the recipe. Throws InputError where solid angles are wanted and the format has none.
+  Problem(const Samples& samples, const Recipe& recipe);
+
+  std::size_t size() const { return kernel_.count; }
+  std::size_t channels() const { return kernel_.measured.size(); }
+  const KernelSamples& kernel_samples() const { return kernel_; }
+
+  // Sums over all samples. The samples are cut into a fixed number of runs whose sums are added in order, so that the
+  // result does not depend on the number of threads, and memory does not depend on the number of samples.
+  KernelSums Sum(const KernelModel& model, bool gradient, ThreadPool* pool) const;
+
+ private:
+  KernelSamples kernel_;
+};
+
+// Pointers to the samples' directions in the kernel's order.
+void SetDirections(const Samples& samples, KernelSamples* kernel);
+
+// Runs [begin, end) of samples in a fixed cut that depends on `count` only.
+std::size_t RunCount(std::size_t count);
+std::size_t RunBegin(std::size_t count, std::size_t run);
+
+}  // namespace lobefit

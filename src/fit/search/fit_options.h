@@ -1,0 +1,19 @@
+// How much a fit searches.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lobefit {
+
+struct FitOptions {
+  int threads = 1;
+  // Descents on the subsample, from the best-ranked starts; five times as many for models of several lobes.
+  std::size_t starts = 8;
+  std::uint64_t seed = 1;
+  // Samples of the subsample on which starts are ranked and descended; fits with at most three times as many use all
+  // samples throughout. Larger ones go through a second level of 40 000 samples.
+  std::size_t subsample = 2000;
+};
+
+}  // namespace lobefit

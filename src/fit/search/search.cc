@@ -1,0 +1,108 @@
+#include "lobefit/fit/search/search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lobefit/fit/search/starts.h"
+
+namespace lobefit {
+namespace {
+
+// Samples of the second level. Its minima lie so close to those of a full table that few steps are left to do there.
+constexpr std::size_t kMiddle = 40000;
+// Minima that go on to the next level: at most so many, and no worse than the best by this factor in cost.
+constexpr std::size_t kToMiddle = 6, kToAll = 2;
+constexpr double kWorse = 1.5, kWorseMiddle = 1.05;
+// Relative decrease of the cost at which a descent ends. With 3 million residuals 1e-8 is a hundredth of the variance
+// of one. Lobes that may tilt have a kink at every sample where masking begins; beyond this they creep: 100 steps for
+// another 1e-8 on a full table of an acrylic.
+constexpr double kMiddleTolerance = 1e-7, kTolerance = 1e-8;
+// Descents of a model with several lobes, for each one of a model with one: two lobes have 36 pairs of start widths.
+constexpr std::size_t kDescentsOfSeveral = 5;
+
+// Two descents ended in the same minimum where their costs agree to a relative 1e-5 (the subsample's descents end at
+// 1e-12), or where both are nothing but rounding: residuals of 1e-12 on average.
+bool SameCost(double a, double b, std::size_t residuals) {
+  return std::fabs(a - b) <= 1e-5 * std::max(a, b) + 1e-24 * static_cast<double>(residuals);
+}
+
+// Sorts by cost and joins equal ones.
+void JoinEqual(std::size_t residuals, std::vector<DistinctMinimum>* minima) {
+  std::erase_if(*minima, [](const DistinctMinimum& m) { return !std::isfinite(m.solution.cost); });
+  std::stable_sort(minima->begin(), minima->end(), [](const DistinctMinimum& a, const DistinctMinimum& b) {
+    return a.solution.cost < b.solution.cost;
+  });
+  std::vector<DistinctMinimum> distinct;
+  for (const DistinctMinimum& minimum : *minima) {
+    if (!distinct.empty() && SameCost(distinct.back().solution.cost, minimum.solution.cost, residuals)) {
+      distinct.back().starts += minimum.starts;
+    } else {
+      distinct.push_back(minimum);
+    }
+  }
+  *minima = distinct;
+}
+
+// Descends from the best-ranked starts.
+std::vector<DistinctMinimum> Descend(const Problem& problem, const Layout& layout, const Samples& samples,
+                                     const FitOptions& options, ThreadPool* pool) {
+  std::vector<Start> starts = RankedStarts(problem, layout, samples, pool);
+  const std::size_t descents = options.starts * (layout.recipe().model.lobes.size() > 1 ? kDescentsOfSeveral : 1);
+  if (starts.size() > descents) starts.resize(descents);
+  std::vector<DistinctMinimum> minima(starts.size());
+  pool->Run(starts.size(), [&](std::size_t k) {
+    ThreadPool alone(1);
+    minima[k] = {Solve(problem, layout, starts[k].u, {}, &alone), 1, problem.size()};
+  });
+  JoinEqual(problem.size() * problem.channels(), &minima);
+  return minima;
+}
+
+// Goes on with the best minima on the samples of `problem`, in place; the costs of the others are scaled to it.
+void Refine(const Problem& problem, const Layout& layout, std::size_t most, double worse, double tolerance,
+            ThreadPool* pool, std::vector<DistinctMinimum>* minima) {
+  if (minima->empty()) return;
+  SolveOptions finish;
+  finish.function_tolerance = tolerance;
+  finish.max_iterations = 100;
+  const double limit = worse * minima->front().solution.cost;
+  std::size_t refined = 0;
+  for (DistinctMinimum& minimum : *minima) {
+    if (refined < most && (refined == 0 || minimum.solution.cost <= limit)) {
+      const int before = minimum.solution.iterations;
+      minimum.solution = Solve(problem, layout, minimum.solution.u, finish, pool);
+      minimum.solution.iterations += before;
+      minimum.samples = problem.size();
+      minimum.on_all_samples = true;
+      ++refined;
+    } else {
+      minimum.solution.cost *= static_cast<double>(problem.size()) / static_cast<double>(minimum.samples);
+      minimum.samples = problem.size();
+      minimum.on_all_samples = false;
+    }
+  }
+  // Costs of different subsamples compare roughly only: those that were refined come first.
+  std::vector<DistinctMinimum> first(minima->begin(), minima->begin() + static_cast<std::ptrdiff_t>(refined)),
+      rest(minima->begin() + static_cast<std::ptrdiff_t>(refined), minima->end());
+  JoinEqual(problem.size() * problem.channels(), &first);
+  first.insert(first.end(), rest.begin(), rest.end());
+  *minima = first;
+}
+
+}  // namespace
+
+std::vector<DistinctMinimum> FindMinima(const Problem& problem, const Layout& layout, const Samples& samples,
+                                        const FitOptions& options, ThreadPool* pool) {
+  if (samples.size() <= 3 * options.subsample) return Descend(problem, layout, samples, options, pool);
+  const Recipe& recipe = layout.recipe();
+  const Samples small = samples.Subset(StratifiedSubsample(samples.size(), options.subsample, options.seed));
+  std::vector<DistinctMinimum> minima = Descend(Problem(small, recipe), layout, small, options, pool);
+  if (samples.size() > 3 * kMiddle) {
+    const Samples middle = samples.Subset(StratifiedSubsample(samples.size(), kMiddle, options.seed + 1));
+    Refine(Problem(middle, recipe), layout, kToMiddle, kWorse, kMiddleTolerance, pool, &minima);
+  }
+  Refine(problem, layout, kToAll, kWorseMiddle, kTolerance, pool, &minima);
+  return minima;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,249 @@
+#include "lobefit/fit/search/starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include <Eigen/Cholesky>
+
+#include "lobefit/fit/search/solve.h"
+#include "lobefit/math/directions.h"
+
+namespace lobefit {
+namespace {
+
+// A factor of 1.6 to 2 between neighbours: from any lobe the nearest is well within the basin of its minimum.
+constexpr double kAlphas[] = {0.005, 0.01, 0.02, 0.04, 0.08, 0.15, 0.25, 0.4, 0.65};
+constexpr double kMirror = 5e-4;  // narrower than the cells of any table
+constexpr double kAspect = 4;     // alpha_x / alpha_y of the anisotropic candidates
+
+// Where the density of normals peaks: mean half vector of the samples with the highest f_r cos_theta_i cos_theta_o
+// (about D F G).
+Vec3 PeakNormal(const Samples& samples) {
+  std::vector<double> density(samples.size(), 0.0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (const std::vector<double>& values : samples.values) density[i] += values[i];
+    density[i] *= samples.wi_z[i] * samples.wo_z[i];
+  }
+  std::vector<std::size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::size_t top = std::max<std::size_t>(1, samples.size() / 100);
+  std::partial_sort(
+      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(top), order.end(),
+      [&](std::size_t a, std::size_t b) { return density[a] != density[b] ? density[a] > density[b] : a < b; });
+  Vec3 sum = {0, 0, 0};
+  for (std::size_t k = 0; k < top; ++k) {
+    const std::size_t i = order[k];
+    sum = sum + std::max(density[i], 1e-300) * HalfVector(samples.wi(i), samples.wo(i));
+  }
+  return Normalized(sum);
+}
+
+// Candidates with the entries that the recipe gives a start for replaced by it; repeated candidates are dropped.
+std::vector<Ellipsoid> WithGivenStarts(std::vector<Ellipsoid> candidates, const Recipe& recipe, std::size_t lobe) {
+  std::vector<Ellipsoid> distinct;
+  for (Ellipsoid& shape : candidates) {
+    double* entries[] = {&shape.alpha_x, &shape.alpha_y, &shape.theta_x, &shape.theta_y, &shape.theta_z};
+    for (std::size_t i = 0; i < 5; ++i) {
+      const std::vector<double>& start = recipe.parameters[FirstParameter(recipe.model, lobe) + i].start;
+      if (!start.empty()) *entries[i] = start[0];
+    }
+    const bool seen = std::any_of(distinct.begin(), distinct.end(), [&](const Ellipsoid& other) {
+      return other.alpha_x == shape.alpha_x && other.alpha_y == shape.alpha_y && other.theta_x == shape.theta_x &&
+             other.theta_y == shape.theta_y && other.theta_z == shape.theta_z;
+    });
+    if (!seen) distinct.push_back(shape);
+  }
+  return distinct;
+}
+
+bool SameKind(const Lobe& a, const Lobe& b) {
+  return a.ndf == b.ndf && a.masking == b.masking && a.fresnel == b.fresnel && a.metal == b.metal;
+}
+
+// min 1/2 x^T H x + g^T x with low <= x <= high, by an active set: what leaves its bounds is held there.
+Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
+                            const Eigen::VectorXd& high) {
+  const Eigen::Index n = gradient.size();
+  std::vector<int> held(static_cast<std::size_t>(n), 0);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index round = 0; round <= n; ++round) {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (held[static_cast<std::size_t>(i)] == 0) free.push_back(i);
+    }
+    if (free.empty()) break;
+    const auto m = static_cast<Eigen::Index>(free.size());
+    Eigen::MatrixXd h(m, m);
+    Eigen::VectorXd rhs(m);
+    for (Eigen::Index a = 0; a < m; ++a) {
+      rhs(a) = -gradient(free[static_cast<std::size_t>(a)]);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        if (held[static_cast<std::size_t>(i)] != 0) rhs(a) -= hessian(free[static_cast<std::size_t>(a)], i) * x(i);
+      }
+      for (Eigen::Index b = 0; b < m; ++b)
+        h(a, b) = hessian(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(b)]);
+      // A column without any signal keeps its parameter where it is.
+      if (!(h(a, a) > 0)) h(a, a) = 1;
+    }
+    const Eigen::VectorXd step = h.ldlt().solve(rhs);
+    bool left = false;
+    for (Eigen::Index a = 0; a < m; ++a) {
+      const Eigen::Index i = free[static_cast<std::size_t>(a)];
+      x(i) = std::isfinite(step(a)) ? step(a) : 0.0;
+      if (x(i) < low(i) || x(i) > high(i)) {
+        x(i) = std::clamp(x(i), low(i), high(i));
+        held[static_cast<std::size_t>(i)] = 1;
+        left = true;
+      }
+    }
+    if (!left) break;
+  }
+  return x;
+}
+
+}  // namespace
+
+std::vector<std::size_t> StratifiedSubsample(std::size_t samples, std::size_t count, std::uint64_t seed) {
+  std::vector<std::size_t> indices;
+  if (samples <= count) {
+    indices.resize(samples);
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
+    return indices;
+  }
+  std::mt19937_64 random(seed);
+  const double run = static_cast<double>(samples) / static_cast<double>(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double place = static_cast<double>(random() >> 11U) * 0x1p-53;
+    indices.push_back(std::min(samples - 1, static_cast<std::size_t>((static_cast<double>(k) + place) * run)));
+  }
+  return indices;
+}
+
+std::vector<double> LinearisedWeights(const Samples& samples, Metric metric) {
+  std::vector<double> weight(samples.size(), 0.0);
+  double mean = 0;
+  for (const std::vector<double>& values : samples.values) {
+    for (std::size_t i = 0; i < samples.size(); ++i) mean += std::fabs(values[i] * samples.wi_z[i]);
+  }
+  mean /= static_cast<double>(samples.size() * samples.values.size());
+  // Keeps the slope of the cube root and of the relative error finite at zero.
+  const double floor = 1e-3 * mean + 1e-300;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    double v = 0;
+    for (const std::vector<double>& values : samples.values) v += values[i] * samples.wi_z[i];
+    v = std::max(v / static_cast<double>(samples.values.size()), floor);
+    double slope = 1;
+    if (TransformOf(metric) == Transform::kLog1p) slope = 1 / (1 + v);
+    if (TransformOf(metric) == Transform::kCubeRoot) slope = 1 / std::cbrt(v * v);
+    if (TransformOf(metric) == Transform::kRelative) slope = 1 / v;
+    weight[i] = slope * slope * (samples.weight.empty() ? 1.0 : samples.weight[i]);
+  }
+  return weight;
+}
+
+Ellipsoid PeakAxis(const Samples& samples, Ndf ndf, double plane_azimuth) {
+  const Vec3 peak = PeakNormal(samples);
+  if (ndf != Ndf::kGgxTilted) return {1, 1, std::asin(std::clamp(peak.y, -1.0, 1.0)), std::atan2(-peak.x, peak.z), 0};
+  const double along = peak.x * std::cos(plane_azimuth) + peak.y * std::sin(plane_azimuth);
+  return {1, 1, 0, std::atan2(-along, peak.z), -plane_azimuth};
+}
+
+std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double plane_azimuth) {
+  std::vector<Ellipsoid> tilts = {{1, 1, 0, 0, ndf == Ndf::kGgxTilted ? -plane_azimuth : 0.0}};
+  if (IsTilted(ndf)) tilts.push_back(PeakAxis(samples, ndf, plane_azimuth));
+  std::vector<Ellipsoid> shapes;
+  for (const Ellipsoid& tilt : tilts) {
+    for (const double alpha : kAlphas) {
+      Ellipsoid shape = tilt;
+      shape.alpha_x = shape.alpha_y = alpha;
+      shapes.push_back(shape);
+      if (IsRound(ndf)) continue;
+      for (const double degrees : {0.0, 45.0, 90.0, -45.0}) {
+        shape.alpha_x = std::min(1.0, alpha * std::sqrt(kAspect));
+        shape.alpha_y = alpha / std::sqrt(kAspect);
+        shape.theta_z = DegreesToRadians(degrees);
+        shapes.push_back(shape);
+      }
+    }
+  }
+  return shapes;
+}
+
+double SolveLinear(const Problem& problem, const Layout& layout, std::vector<double>* u, ThreadPool* pool) {
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  const double cost = Linearise(problem, layout, u->data(), pool, &hessian, &gradient);
+  const auto first = static_cast<Eigen::Index>(layout.shape_size());
+  const Eigen::Index n = gradient.size() - first;
+  if (n == 0 || !hessian.allFinite() || !gradient.allFinite()) return cost;
+  Eigen::VectorXd low(n), high(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(first + i);
+    low(i) = layout.coordinates()[k].low - (*u)[k];
+    high(i) = layout.coordinates()[k].high - (*u)[k];
+  }
+  const Eigen::VectorXd step = BoundedStep(hessian.bottomRightCorner(n, n), gradient.tail(n), low, high);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(first + i);
+    (*u)[k] = std::clamp((*u)[k] + step(i), layout.coordinates()[k].low, layout.coordinates()[k].high);
+  }
+  return problem.Sum(layout.ToKernel(u->data()), false, pool).sum_rho / 2;
+}
+
+std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, const Samples& samples,
+                                ThreadPool* pool) {
+  const Recipe& recipe = layout.recipe();
+  std::vector<std::vector<Ellipsoid>> tuples = {{}};
+  for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
+    std::vector<std::vector<Ellipsoid>> longer;
+    std::vector<Ellipsoid> shapes = CandidateShapes(samples, recipe.model.lobes[l].ndf, recipe.plane_azimuth);
+    // Of several lobes one with Schlick's edge may have to vanish, which it does as a mirror only.
+    if (recipe.model.lobes.size() > 1) shapes.push_back({kMirror, kMirror, 0, 0, 0});
+    const std::vector<Ellipsoid> candidates = WithGivenStarts(shapes, recipe, l);
+    for (const std::vector<Ellipsoid>& tuple : tuples) {
+      for (const Ellipsoid& shape : candidates) {
+        // Lobes of one kind are interchangeable: narrower ones first; and of several lobes only isotropic candidates
+        // are combined.
+        const bool given = !recipe.parameters[FirstParameter(recipe.model, l)].start.empty();
+        const bool same = l > 0 && SameKind(recipe.model.lobes[l - 1], recipe.model.lobes[l]);
+        if (!given && !tuple.empty() &&
+            (same ? shape.alpha_x <= tuple.back().alpha_x : shape.alpha_x == tuple.back().alpha_x))
+          continue;
+        if (!given && recipe.model.lobes.size() > 1 && shape.alpha_x != shape.alpha_y) continue;
+        longer.push_back(tuple);
+        longer.back().push_back(shape);
+      }
+    }
+    tuples = longer;
+  }
+  // Amplitudes first under the metric linearised about the measured values, where one step is exact; then under the
+  // metric itself.
+  Samples weighted = samples;
+  weighted.weight = LinearisedWeights(samples, recipe.metric);
+  Recipe linear = recipe;
+  linear.metric = Metric::kCosineL2;
+  linear.loss = Loss::kNone;
+  const Layout linear_layout(linear, std::vector<std::string>(layout.channels()));
+  const Problem linear_problem(weighted, linear);
+  std::vector<Start> starts(tuples.size());
+  pool->Run(tuples.size(), [&](std::size_t k) {
+    ThreadPool alone(1);
+    std::vector<double> u = layout.FromShapes(tuples[k]);
+    SolveLinear(linear_problem, linear_layout, &u, &alone);
+    starts[k] = {u, SolveLinear(problem, layout, &u, &alone)};
+    // The step may overshoot under a compressive metric: keep the better of the two.
+    const double before = problem.Sum(layout.ToKernel(starts[k].u.data()), false, &alone).sum_rho / 2;
+    if (starts[k].cost < before) {
+      starts[k].u = u;
+    } else {
+      starts[k].cost = before;
+    }
+  });
+  std::erase_if(starts, [](const Start& start) { return !std::isfinite(start.cost); });
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  return starts;
+}
+
+}  // namespace lobefit

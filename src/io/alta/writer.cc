@@ -1,0 +1,27 @@
+#include "lobefit/io/alta/writer.h"
+
+#include <ostream>
+
+#include "lobefit/base/file.h"
+#include "lobefit/base/text.h"
+#include "lobefit/math/directions.h"
+
+namespace lobefit {
+
+void WriteAlta(const Measurement& measurement, const std::filesystem::path& path) {
+  const Samples& samples = measurement.samples;
+  const std::size_t channels = measurement.channels.size();
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out << "#ALTA HEADER BEGIN\n# channels: " << Join(measurement.channels.names, " ") << "\n#DIM 4 " << channels
+        << "\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n#PARAM_OUT INV_STERADIAN\n#ALTA HEADER END\n";
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Vec3 wi = samples.wi(i), wo = samples.wo(i);
+      out << FormatDouble(PolarAngle(wi)) << ' ' << FormatDouble(Azimuth(wi)) << ' ' << FormatDouble(PolarAngle(wo))
+          << ' ' << FormatDouble(Azimuth(wo));
+      for (std::size_t c = 0; c < channels; ++c) out << ' ' << FormatDouble(samples.values[c][i]);
+      out << '\n';
+    }
+  });
+}
+
+}  // namespace lobefit

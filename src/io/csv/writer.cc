@@ -1,0 +1,40 @@
+#include "lobefit/io/csv/writer.h"
+
+#include <charconv>
+#include <ostream>
+
+#include "lobefit/base/file.h"
+#include "lobefit/base/text.h"
+#include "lobefit/math/directions.h"
+
+namespace lobefit {
+
+void WriteCsv(const Measurement& measurement, const std::vector<std::string>& comments,
+              const std::filesystem::path& path, int digits) {
+  const Samples& samples = measurement.samples;
+  const auto number = [&](double value) {
+    if (digits >= 17) return FormatDouble(value);
+    char buffer[40];
+    const std::to_chars_result end =
+        std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::general, digits);
+    return std::string(buffer, end.ptr);
+  };
+  const auto degrees = [&](double radians) { return number(RadiansToDegrees(radians)); };
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    for (const std::string& comment : comments) out << "# " << comment << '\n';
+    out << "# angle-unit: deg\n# value-kind: f\n# incident: towards\n";
+    out << "theta_i,phi_i,theta_o,phi_o";
+    const bool mono = measurement.channels.size() == 1 && measurement.channels.wavelengths_nm.empty();
+    for (const std::string& name : measurement.channels.names) out << ',' << (mono ? "value" : name);
+    out << '\n';
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Vec3 wi = samples.wi(i), wo = samples.wo(i);
+      out << degrees(PolarAngle(wi)) << ',' << degrees(Azimuth(wi)) << ',' << degrees(PolarAngle(wo)) << ','
+          << degrees(Azimuth(wo));
+      for (const std::vector<double>& values : samples.values) out << ',' << number(values[i]);
+      out << '\n';
+    }
+  });
+}
+
+}  // namespace lobefit

@@ -1,0 +1,128 @@
+// FRED tabular scatter text: "type bsdf_data", a format line, then for each incidence a line "theta_i phi_i" followed
+// by lines "theta_s phi_s value". Values are f_r in 1/sr without a cosine. The incident azimuth is that of the
+// propagation in the files that are around: the specular direction has the azimuth of its incidence.
+#include "lobefit/io/fred/reader.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "lobefit/io/text/place.h"
+#include "lobefit/math/directions.h"
+
+namespace lobefit {
+namespace {
+
+struct FormatLine {
+  AngleUnit unit = AngleUnit::kDegrees;
+  double scale = 1;
+};
+
+FormatLine ParseFormatLine(const InputFile& file, std::size_t line_number,
+                           const std::vector<std::string_view>& fields) {
+  FormatLine format;
+  for (std::size_t i = 1; i < fields.size(); ++i) {
+    const std::vector<std::string_view> pair = Split(fields[i], '=');
+    const std::string key = ToLower(pair[0]);
+    const std::string value = pair.size() == 2 ? ToLower(pair[1]) : "";
+    if (key == "angles" && (value == "deg" || value == "rad")) {
+      format.unit = value == "deg" ? AngleUnit::kDegrees : AngleUnit::kRadians;
+    } else if (key == "bsdf" && value == "value") {
+      continue;
+    } else if (key == "scale" && pair.size() == 2) {
+      format.scale = FiniteNumberAt(file, line_number, pair[1], "scale");
+    } else {
+      FailAtLine(file, line_number,
+                 "the format line has '" + Excerpt(fields[i]) +
+                     "', which is not known; allowed are angles=deg, angles=rad, "
+                     "bsdf=value and scale=NUMBER");
+    }
+  }
+  return format;
+}
+
+}  // namespace
+
+bool IsFred(std::string_view bytes) {
+  LineReader lines(Head(bytes));
+  std::string_view line;
+  while (lines.Next(&line)) {
+    const std::vector<std::string_view> fields = SplitBlanks(line);
+    if (fields.empty() || fields[0].substr(0, 1) == "#" || fields[0].substr(0, 2) == "!!") continue;
+    return fields.size() == 2 && ToLower(fields[0]) == "type" && ToLower(fields[1]) == "bsdf_data";
+  }
+  return false;
+}
+
+Measurement ReadFred(const InputFile& file, const ReadOptions& options) {
+  const IncidentSense sense = options.incident_sense.value_or(IncidentSense::kPropagation);
+  const double turn = sense == IncidentSense::kPropagation ? kPi : 0;
+  MeasurementBuilder builder({{"Y"}, {}});
+  FormatLine format;
+  bool has_type = false, has_format = false, has_incidence = false;
+  double to_radians = 1;
+  Vec3 wi = {0, 0, 1};
+  LineReader lines(file.bytes);
+  std::string_view line;
+  while (lines.Next(&line)) {
+    const std::vector<std::string_view> fields = SplitBlanks(line);
+    if (fields.empty() || fields[0].substr(0, 1) == "#" || fields[0].substr(0, 2) == "!!") continue;
+    const std::size_t at = lines.line_number();
+    if (!has_type) {
+      if (fields.size() != 2 || ToLower(fields[0]) != "type" || ToLower(fields[1]) != "bsdf_data") {
+        FailAtLine(file, at, "a FRED table begins with 'type bsdf_data', but here stands '" + Excerpt(line) + "'");
+      }
+      has_type = true;
+      continue;
+    }
+    if (!has_format) {
+      if (ToLower(fields[0]) != "format") {
+        FailAtLine(file, at,
+                   "'" + Excerpt(line) +
+                       "' stands where the format line should; write 'format angles=deg "
+                       "bsdf=value scale=1' if that is what the numbers are");
+      }
+      format = ParseFormatLine(file, at, fields);
+      to_radians = format.unit == AngleUnit::kDegrees ? kPi / 180 : 1;
+      has_format = true;
+      continue;
+    }
+    if (fields.size() != 2 && fields.size() != 3) {
+      FailAtLine(file, at,
+                 "has " + std::to_string(fields.size()) +
+                     " fields; allowed are 2 (theta_i phi_i, a new "
+                     "incidence) or 3 (theta_s phi_s value)");
+    }
+    const double theta = to_radians * FiniteNumberAt(file, at, fields[0], fields.size() == 2 ? "theta_i" : "theta_s");
+    const double phi = to_radians * FiniteNumberAt(file, at, fields[1], fields.size() == 2 ? "phi_i" : "phi_s");
+    if (std::fabs(theta) > kPi + 1e-6) {
+      FailAtLine(file, at,
+                 "the polar angle '" + Excerpt(fields[0]) +
+                     "' is beyond a half turn; check the unit in the "
+                     "format line");
+    }
+    if (fields.size() == 2) {
+      wi = FromSpherical(theta, phi + turn);
+      has_incidence = true;
+      continue;
+    }
+    if (!has_incidence) {
+      FailAtLine(file, at, "a row theta_s phi_s value stands before the first line theta_i phi_i; add the incidence");
+    }
+    const double value = format.scale * NumberAt(file, at, fields[2], "value");
+    builder.Add(wi, FromSpherical(theta, phi), &value, static_cast<std::uint32_t>(at));
+  }
+  if (!has_format) {
+    FailAtLine(file, std::max<std::size_t>(lines.line_number(), 1),
+               "the file ends before its format line ('format angles=deg bsdf=value scale=1'); it may be cut off");
+  }
+  Measurement measurement = builder.Finish();
+  measurement.conventions["angle-unit"] = format.unit == AngleUnit::kDegrees ? "deg (header)" : "rad (header)";
+  measurement.conventions["value-kind"] = "f (header)";
+  measurement.conventions["incident"] = std::string(sense == IncidentSense::kPropagation ? "propagation" : "towards") +
+                                        (options.incident_sense ? "" : " (default)");
+  if (format.scale != 1) measurement.conventions["scale"] = FormatDouble(format.scale) + " (header)";
+  return measurement;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,257 @@
+#include "lobefit/renderer/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "lobefit/core/brdf/vndf.h"
+#include "lobefit/math/directions.h"
+
+namespace lobefit {
+namespace {
+
+double Power5(double x) { return x * x * x * x * x; }
+
+// 2 Lambda + 1 = sqrt(1 + tan^2 weighted by the widths) for w in the frame.
+double Root(const Vec3& w, double alpha_x, double alpha_y) {
+  const double x = alpha_x * w.x, y = alpha_y * w.y;
+  return std::sqrt(1 + (x * x + y * y) / (w.z * w.z));
+}
+
+double G2(SurfaceMasking masking, const Widths& widths, const Vec3& i, const Vec3& o) {
+  if (masking == SurfaceMasking::kSeparable) {
+    return 4 / ((1 + Root(i, widths.alpha_1, widths.alpha_2)) * (1 + Root(o, widths.alpha_1, widths.alpha_2)));
+  }
+  const double mean = std::sqrt(widths.alpha_1 * widths.alpha_2);
+  const bool averaged = masking == SurfaceMasking::kMeanAlpha;
+  const double ax = averaged ? mean : widths.alpha_1, ay = averaged ? mean : widths.alpha_2;
+  return 2 / (Root(i, ax, ay) + Root(o, ax, ay));
+}
+
+double GgxNdf(const Widths& widths, const Vec3& h) {
+  const double x = h.x / widths.alpha_1, y = h.y / widths.alpha_2, q = x * x + y * y + h.z * h.z;
+  return 1 / (kPi * widths.alpha_1 * widths.alpha_2 * q * q);
+}
+
+struct Frame {
+  Vec3 tangent, bitangent, normal;
+
+  explicit Frame(const SurfaceLobe& lobe) : normal(lobe.normal) {
+    const Vec3 along = {std::cos(lobe.rotation), std::sin(lobe.rotation), 0};
+    tangent = Normalized(along - Dot(along, normal) * normal);
+    bitangent = Cross(normal, tangent);
+  }
+  Vec3 Local(const Vec3& w) const { return {Dot(w, tangent), Dot(w, bitangent), Dot(w, normal)}; }
+};
+
+// Everything that does not depend on directions, made once.
+class SurfaceEvaluator {
+ public:
+  explicit SurfaceEvaluator(const Surface& surface) : surface_(surface) {
+    for (const SurfaceLobe& lobe : surface.lobes) {
+      frames_.emplace_back(lobe);
+      const bool needs_albedo = surface.energy_compensation || surface.layering == Surface::Layering::kAlbedo;
+      albedos_.push_back(
+          needs_albedo ? std::make_unique<const IsotropicAlbedo>(std::sqrt(lobe.widths.alpha_1 * lobe.widths.alpha_2))
+                       : nullptr);
+    }
+  }
+
+  void Evaluate(const Vec3& wi, const Vec3& wo, double* values) const {
+    std::fill_n(values, 3, 0.0);
+    if (!(wi.z > 0) || !(wo.z > 0)) return;
+    const double cos_d = Dot(wi, HalfVector(wi, wo));
+    for (std::size_t l = 0; l < surface_.lobes.size(); ++l) AddLobe(l, wi, wo, cos_d, values);
+    AddDiffuse(wi, wo, cos_d, values);
+  }
+
+ private:
+  void AddLobe(std::size_t l, const Vec3& wi, const Vec3& wo, double cos_d, double* values) const {
+    const SurfaceLobe& lobe = surface_.lobes[l];
+    const Vec3 i = frames_[l].Local(wi), o = frames_[l].Local(wo);
+    if (!(i.z > 0) || !(o.z > 0)) return;
+    const double specular = lobe.weight * GgxNdf(lobe.widths, HalfVector(i, o)) *
+                            G2(surface_.masking, lobe.widths, i, o) / (4 * o.z * wi.z);
+    const double lost = surface_.energy_compensation ? 1 / (*albedos_[l])(o.z, 1, 1) - 1 : 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double f = lobe.fresnel(c, cos_d);
+      values[c] += specular * f * (1 + f * lost);
+    }
+  }
+
+  void AddDiffuse(const Vec3& wi, const Vec3& wo, double cos_d, double* values) const {
+    const double cos_i = Dot(surface_.diffuse_normal, wi), cos_o = Dot(surface_.diffuse_normal, wo);
+    if (!(cos_i > 0) || !(cos_o > 0)) return;
+    double left = 1;
+    if (surface_.layering == Surface::Layering::kSchlick) {
+      left = 1 - std::max({surface_.layer(0, cos_d), surface_.layer(1, cos_d), surface_.layer(2, cos_d)});
+    } else if (surface_.layering == Surface::Layering::kAlbedo) {
+      left = 1 - LayerAlbedo(Dot(frames_[surface_.layer_lobe].normal, wo));
+    }
+    for (std::size_t c = 0; c < 3; ++c) values[c] += surface_.diffuse[c] * left * kInvPi * cos_i / wi.z;
+  }
+
+  double LayerAlbedo(double cos_o) const {
+    const IsotropicAlbedo& albedo = *albedos_[surface_.layer_lobe];
+    const double mu = std::max(cos_o, 1e-6);
+    const double f0 = surface_.lobes[surface_.layer_lobe].fresnel(0, 1);
+    const double lost = 1 / albedo(mu, 1, 1) - 1;
+    return std::min(1.0, albedo(mu, f0, 1) * (1 + lost * surface_.lobes[surface_.layer_lobe].fresnel(0, mu)));
+  }
+
+  Surface surface_;
+  std::vector<Frame> frames_;
+  std::vector<std::unique_ptr<const IsotropicAlbedo>> albedos_;
+};
+
+}  // namespace
+
+double SurfaceFresnel::operator()(std::size_t channel, double cos_d) const {
+  switch (kind) {
+    case Kind::kConductor:
+      return k[channel] > 0 ? FresnelConductor(cos_d, {eta[channel], k[channel]})
+                            : FresnelDielectric(cos_d, eta[channel]);
+    case Kind::kDielectric:
+      return FresnelDielectric(cos_d, eta[0]);
+    case Kind::kSchlick:
+      break;
+  }
+  return f0[channel] + (f90[channel] - f0[channel]) * Power5(std::max(0.0, 1 - cos_d));
+}
+
+BrdfFunction SurfaceBrdf(const Surface& surface) {
+  return [evaluator = std::make_shared<const SurfaceEvaluator>(surface)](
+             const Vec3& wi, const Vec3& wo, double* values) { evaluator->Evaluate(wi, wo, values); };
+}
+
+IsotropicAlbedo::IsotropicAlbedo(double alpha) {
+  constexpr int kNodes = 65, kSide = 64;  // 0.1 % of the albedo, 20 ms
+  for (int node = 0; node < kNodes; ++node) {
+    const double mu = std::max(1e-3, static_cast<double>(node) / (kNodes - 1));
+    const Vec3 v = {std::sqrt(1 - mu * mu), 0, mu};
+    const EllipsoidVndfSampler sampler({alpha, alpha, 0, 0, 0}, v);
+    double a = 0, b = 0;
+    for (int k = 0; k < kSide * kSide; ++k) {
+      const Vec3 m = sampler.Sample((k % kSide + 0.5) / kSide, (k / kSide + 0.5) / kSide);
+      const Vec3 l = Reflect(v, m);
+      if (!(l.z > 0)) continue;
+      // G2 / G1 of the viewer.
+      const double weight = (1 + Root(v, alpha, alpha)) / (Root(v, alpha, alpha) + Root(l, alpha, alpha));
+      const double schlick = Power5(1 - Dot(v, m));
+      a += weight * (1 - schlick);
+      b += weight * schlick;
+    }
+    a_.push_back(a / (kSide * kSide));
+    b_.push_back(b / (kSide * kSide));
+  }
+}
+
+double IsotropicAlbedo::operator()(double mu, double f0, double f90) const {
+  const double position = std::clamp(mu, 0.0, 1.0) * static_cast<double>(a_.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(position), a_.size() - 2);
+  const double t = position - static_cast<double>(below);
+  const auto at = [&](const std::vector<double>& table) { return (1 - t) * table[below] + t * table[below + 1]; };
+  return f0 * at(a_) + f90 * at(b_);
+}
+
+ConductorIndex ConductorOfReflectance(double r) {
+  const double clamped = std::clamp(r, 0.0, 0.9999);
+  return {1, 2 * std::sqrt(clamped) / std::sqrt(1 - clamped)};
+}
+
+ConductorIndex NearestConductor(const std::function<double(double)>& fresnel) {
+  const double f0 = std::clamp(fresnel(1), 1e-6, 0.9999), root = std::sqrt(f0);
+  // The circle of all indices with that reflectance, from one dielectric to the other.
+  const double log_low = std::log((1 - root) / (1 + root)), log_high = -log_low;
+  const auto at = [&](double log_eta) {
+    const double eta = std::exp(log_eta);
+    const double k2 = (f0 * (eta + 1) * (eta + 1) - (eta - 1) * (eta - 1)) / (1 - f0);
+    return ConductorIndex{eta, std::sqrt(std::max(0.0, k2))};
+  };
+  const auto cost = [&](double log_eta) {
+    const ConductorIndex index = at(log_eta);
+    double sum = 0;
+    for (int i = 1; i < 50; ++i) {
+      const double c = i / 50.0;
+      const double f = index.k > 0 ? FresnelConductor(c, index) : FresnelDielectric(c, index.eta);
+      sum += c * (f - fresnel(c)) * (f - fresnel(c));
+    }
+    return sum;
+  };
+  constexpr int kSteps = 100;
+  double best = log_low, step = (log_high - log_low) / kSteps;
+  for (int i = 0; i <= kSteps; ++i) {
+    if (cost(log_low + i * step) < cost(best)) best = log_low + i * step;
+  }
+  for (; step > 1e-7; step /= 2) {
+    for (const double trial : {best - step, best + step}) {
+      if (trial >= log_low && trial <= log_high && cost(trial) < cost(best)) best = trial;
+    }
+  }
+  return at(best);
+}
+
+SurfaceLobe LobeOf(const FittedBrdf& fit, std::size_t lobe, double weight) {
+  SurfaceLobe result;
+  const FittedLobe& fitted = fit.lobes()[lobe];
+  result.widths = fitted.widths;
+  result.rotation = fitted.rotation;
+  if (fitted.tilt > 1e-6) result.normal = fitted.axis;
+  result.weight = weight;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t channel = fit.material().channels.size() == 1 ? 0 : c;
+    result.fresnel.f0[c] = fit.Fresnel(lobe, channel, 1) / weight;
+    result.fresnel.f90[c] = std::min(1.0, fit.Fresnel(lobe, channel, 0) / weight);
+  }
+  return result;
+}
+
+SurfaceFresnel ConductorFresnelOf(const FittedBrdf& fit, std::size_t lobe, double share) {
+  SurfaceFresnel fresnel;
+  fresnel.kind = SurfaceFresnel::Kind::kConductor;
+  const Material& material = fit.material();
+  const bool own = fit.lobes()[lobe].choices.fresnel == Fresnel::kConductor && share == 1;
+  const std::size_t first = FirstParameter(material.model, lobe) + kShapeParameters;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t channel = material.channels.size() == 1 ? 0 : c;
+    const ConductorIndex index =
+        own ? ConductorIndex{material.parameters[first].values[channel], material.parameters[first + 1].values[channel]}
+            : NearestConductor([&](double cos_d) { return fit.Fresnel(lobe, channel, cos_d) / share; });
+    fresnel.eta[c] = index.eta;
+    fresnel.k[c] = index.k;
+  }
+  return fresnel;
+}
+
+std::size_t StrongestLobe(const FittedBrdf& fit) {
+  std::size_t strongest = 0;
+  double largest = -1;
+  for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
+    double sum = 0;
+    for (std::size_t c = 0; c < fit.material().channels.size(); ++c) sum += fit.Fresnel(l, c, 1);
+    if (sum > largest) largest = sum, strongest = l;
+  }
+  return strongest;
+}
+
+Color3 DiffuseOf(const FittedBrdf& fit) {
+  Color3 diffuse = {};
+  for (std::size_t c = 0; c < 3; ++c) diffuse[c] = fit.diffuse()[fit.diffuse().size() == 1 ? 0 : c];
+  return diffuse;
+}
+
+Shares SharesOf(const FittedBrdf& fit) {
+  Shares shares;
+  const Color3 diffuse = DiffuseOf(fit);
+  shares.diffuse = fit.lobes().empty() ? 1.0 : std::clamp(*std::max_element(diffuse.begin(), diffuse.end()), 0.0, 0.99);
+  double sum = 0;
+  for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
+    const SurfaceLobe lobe = LobeOf(fit, l, 1);
+    shares.lobes.push_back(std::max(1e-6, *std::max_element(lobe.fresnel.f0.begin(), lobe.fresnel.f0.end())));
+    sum += shares.lobes.back();
+  }
+  for (double& share : shares.lobes) share *= (1 - shares.diffuse) / sum;
+  return shares;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,113 @@
+#include "lobefit/report/figures/energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lobefit/core/brdf/diffuse_facets.h"
+#include "lobefit/core/brdf/lobe.h"
+#include "lobefit/core/ndf/slope_ndf.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/math/quadrature.h"
+
+namespace lobefit {
+namespace {
+
+constexpr int kRings = 160, kSteps = 64;
+constexpr int kDiffuseRings = 24, kDiffuseSteps = 48;
+
+SlopeCoordinates ShapeOf(const Model& model, const ParameterValues& values, std::size_t lobe) {
+  const std::size_t at = FirstParameter(model, lobe);
+  return SlopeCoordinatesFromEllipsoid(
+      {values[at][0], values[at + 1][0], values[at + 2][0], values[at + 3][0], values[at + 4][0]});
+}
+
+// Calls each(m, share) for facets m at the slopes of equal probability of GGX's P22 (midpoints in probability and
+// angle); the mean of share * g(m) is the integral of g over normals.
+template <class Each>
+void ForFacets(const SlopeCoordinates& shape, const Each& each) {
+  const SlopeFrame frame(shape);
+  for (int i = 0; i < kRings; ++i) {
+    const double u = (i + 0.5) / kRings, rho = std::sqrt(u / (1 - u));
+    for (int k = 0; k < kSteps; ++k) {
+      // Every ring is turned against the one before, so that rings do not line up.
+      const double t = 2 * kPi * (k + 0.5 + 0.618034 * i) / kSteps;
+      const double x = frame.slope_x + frame.a * rho * std::cos(t);
+      const double y = frame.slope_y + frame.b * rho * std::cos(t) + frame.c * rho * std::sin(t);
+      const Vec3 m = Normalized(Vec3{-x, -y, 1.0});
+      each(m, 1 / (SlopeD(frame, m) * m.z * kRings * kSteps));  // P22 dslope = D (m.n) dm
+    }
+  }
+}
+
+// Adds the albedo of the lobe to `albedo`, a channel, with F of parameters[channel].
+void AddLobe(const Lobe& lobe, const SlopeCoordinates& shape, Fresnel fresnel,
+             const std::vector<std::vector<double>>& parameters, const Vec3& wi, std::vector<double>* albedo) {
+  ForFacets(shape, [&](const Vec3& m, double share) {
+    // wo is the mirror image of wi at the facet.
+    const double along = Dot(wi, m);
+    const Vec3 wo = Reflect(wi, m);
+    if (along <= 0 || wo.z <= 0) return;
+    double cos_d = 0;
+    const double specular = SpecularLobe(wi, wo, lobe, shape, &cos_d, nullptr);
+    const double weight = specular * wo.z * 4 * along * share;  // d wo = 4 (wi.m) dm
+    for (std::size_t c = 0; c < albedo->size(); ++c)
+      (*albedo)[c] += weight * FresnelFactor(fresnel, parameters[c].data(), cos_d, nullptr);
+  });
+}
+
+double DiffuseFacetsAlbedo(const DiffuseFacets& facets, const Vec3& wi) {
+  static const QuadratureRule rule = GaussLegendre(kDiffuseRings);
+  return Integrate(rule, 0, 1, [&](double u) {  // u = sin^2 theta_o
+    double ring = 0;
+    for (int k = 0; k < kDiffuseSteps; ++k) {
+      const double phi = 2 * kPi * (k + 0.5) / kDiffuseSteps, sin = std::sqrt(u);
+      ring += facets.Evaluate(wi, {sin * std::cos(phi), sin * std::sin(phi), std::sqrt(1 - u)}, nullptr);
+    }
+    return ring * kPi / kDiffuseSteps;
+  });
+}
+
+}  // namespace
+
+std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
+                                      const Vec3& wi) {
+  std::vector<double> albedo(channels, 0.0);
+  if (model.diffuse != Diffuse::kNone) albedo = values.back();
+  if (model.diffuse == Diffuse::kMicrofacet) {
+    const double unit = DiffuseFacetsAlbedo(DiffuseFacets(model.lobes[0], ShapeOf(model, values, 0)), wi);
+    for (double& a : albedo) a *= unit;
+  }
+  for (std::size_t lobe = 0; lobe < model.lobes.size(); ++lobe) {
+    const Fresnel fresnel = model.lobes[lobe].fresnel;
+    std::vector<std::vector<double>> parameters(channels);
+    for (std::size_t c = 0; c < channels; ++c) {
+      for (std::size_t k = 0; k < FresnelParameters(fresnel); ++k)
+        parameters[c].push_back(values[FirstParameter(model, lobe) + kShapeParameters + k][c]);
+    }
+    AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), fresnel, parameters, wi, &albedo);
+  }
+  return albedo;
+}
+
+double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& wi) {
+  std::vector<double> albedo = {0};
+  AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), Fresnel::kNone, {{1.0}}, wi, &albedo);
+  return albedo[0];
+}
+
+double WeakFurnace(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& u) {
+  const Masking masking = model.lobes[lobe].masking;
+  if (masking == Masking::kSmithUnclamped || masking == Masking::kVCavity) return 1;
+  const SlopeCoordinates shape = ShapeOf(model, values, lobe);
+  const std::unique_ptr<NormalDistribution> distribution = DistributionOf(model.lobes[lobe].ndf, shape, nullptr);
+  if (masking <= Masking::kSmithHeightDirection) return std::min(1.0, distribution->Sigma(u) / u.z);
+  const Shadowing shadowing = ShadowingOf(masking, shape);
+  double furnace = 0;
+  ForFacets(shape, [&](const Vec3& m, double share) {
+    const double along = Dot(u, m);
+    if (along > 0) furnace += MaskingG1(*distribution, shadowing, u, m) * along * distribution->D(m) * share / u.z;
+  });
+  return furnace;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,25 @@
+// Energy of a fitted model: what share of the light that comes in goes out.
+#pragma once
+
+#include <vector>
+
+#include "lobefit/core/brdf/model.h"
+#include "lobefit/math/vec.h"
+
+namespace lobefit {
+
+// Directional albedo, integral of f_r cos(theta_o) over wo, a channel; wi away from the surface. The specular part is
+// integrated over the lobe's own slopes (points where the visible facets are), 160 x 64 points a lobe; a Lambertian
+// part exactly, diffuse microfacets over 24 x 48 directions.
+std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
+                                      const Vec3& wi);
+
+// The specular lobes alone with F = 1: what a single bounce keeps. One lobe at a time.
+double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& wi);
+
+// Weak white furnace [Heitz eq 36], over the whole sphere of reflected directions: min(1, sigma(u) / cos) for a clamped
+// Smith G1, 1 for an unclamped one and for V-cavities [math.md section 5]; over the points above (error below 1 %) for
+// the maskings that do not come from a surface.
+double WeakFurnace(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& u);
+
+}  // namespace lobefit

@@ -1,0 +1,192 @@
+// The terms of Noise: their table, their words, and what they do.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/synthesis/random.h"
+#include "lobefit/synthesis/synthesis.h"
+
+namespace lobefit {
+namespace {
+
+// Streams of the random terms. The first is the seed itself.
+enum Stream : std::uint64_t { kDrift = 1, kPoisson, kOutliers, kHoles };
+
+double OutsideFactor(const NoiseTerm& term) { return std::string(term.unit) == "deg" ? kPi / 180 : 1; }
+
+void AddDrift(double deviation, std::uint64_t seed, Samples* samples) {
+  RandomNumbers random(StreamSeed(seed, kDrift));
+  std::map<std::array<double, 3>, double> gain;
+  for (std::size_t i = 0; i < samples->size(); ++i) {
+    const auto [entry, is_new] = gain.try_emplace({samples->wi_x[i], samples->wi_y[i], samples->wi_z[i]}, 0.0);
+    if (is_new) entry->second = 1 + deviation * random.Normal();
+    for (std::vector<double>& values : samples->values) values[i] *= entry->second;
+  }
+}
+
+void AddOutliers(double share, std::uint64_t seed, Samples* samples) {
+  RandomNumbers random(StreamSeed(seed, kOutliers));
+  for (std::size_t i = 0; i < samples->size(); ++i) {
+    const double hit = random.Uniform(), power = random.Uniform(-1, 1);
+    if (hit >= share) continue;
+    for (std::vector<double>& values : samples->values) values[i] *= std::pow(10, power);
+  }
+}
+
+void MakeHoles(double share, std::uint64_t seed, Measurement* measurement) {
+  RandomNumbers random(StreamSeed(seed, kHoles));
+  std::vector<std::uint8_t> keep(measurement->samples.size());
+  for (std::uint8_t& k : keep) k = random.Uniform() >= share ? 1 : 0;
+  measurement->set_aside.Add(SetAsideReason::kHole,
+                             static_cast<std::size_t>(std::count(keep.begin(), keep.end(), std::uint8_t{0})));
+  measurement->samples.Keep(keep);
+}
+
+}  // namespace
+
+const std::vector<NoiseTerm>& NoiseTerms() {
+  static const std::vector<NoiseTerm> terms = {
+      {"multiplicative", "1", &Noise::multiplicative, nullptr, 10, false, "standard deviation of a factor a value"},
+      {"additive", "1/sr", &Noise::additive, nullptr, 1e6, false, "standard deviation of a term a value"},
+      {"drift", "1", &Noise::drift, nullptr, 10, false, "standard deviation of a factor an incident direction"},
+      {"poisson", "1/sr", &Noise::poisson, nullptr, 1e6, false, "f_r cos(theta_i) of one count"},
+      {"outliers", "1", &Noise::outliers, nullptr, 1, false, "share of samples off by a factor of up to 10"},
+      {"rectified", "flag", nullptr, &Noise::rectified, 1, false, "only the magnitude of a value is kept"},
+      {"quantisation", "1/sr", &Noise::quantisation, nullptr, 1e6, false, "step of the values"},
+      {"holes", "1", &Noise::holes, nullptr, 0.99, false, "share of samples that are missing"},
+      {"aperture", "deg", &Noise::aperture, nullptr, 45, false, "half angle of the detector's disc"},
+      {"misalignment-x", "deg", &Noise::misalignment_x, nullptr, 45, true, "turn of the sample about x"},
+      {"misalignment-y", "deg", &Noise::misalignment_y, nullptr, 45, true, "turn of the sample about y"},
+  };
+  return terms;
+}
+
+Noise ParseNoise(const std::string& text) {
+  Noise noise;
+  if (Trim(text).empty() || Trim(text) == "none") return noise;
+  std::vector<std::string> names;
+  for (const NoiseTerm& term : NoiseTerms()) names.emplace_back(term.name);
+  for (const std::string_view piece : Split(text, ',')) {
+    const std::size_t equals = piece.find('=');
+    const std::string name(Trim(piece.substr(0, equals)));
+    const auto found = std::find_if(NoiseTerms().begin(), NoiseTerms().end(),
+                                    [&](const NoiseTerm& term) { return name == term.name; });
+    if (found == NoiseTerms().end()) {
+      throw UsageError(fmt::format("noise term '{}' is unknown{}; allowed: {}", Excerpt(name), DidYouMean(name, names),
+                                   Join(names)));
+    }
+    if (found->flag != nullptr) {
+      if (equals != std::string_view::npos)
+        throw UsageError(fmt::format("noise term '{}' takes no value; write it alone", name));
+      noise.*(found->flag) = true;
+      continue;
+    }
+    const std::optional<double> value =
+        equals == std::string_view::npos ? std::nullopt : ParseDouble(piece.substr(equals + 1));
+    const double lowest = found->negative ? -found->highest : 0;
+    if (!value || !(*value >= lowest && *value <= found->highest)) {
+      throw UsageError(fmt::format(
+          "noise term '{}': '{}' is not allowed; write {}=NUMBER with a number in [{:g}, {:g}]{}", name, Excerpt(piece),
+          name, lowest, found->highest, std::string(found->unit) == "deg" ? " degrees" : ""));
+    }
+    noise.*(found->value) = *value * OutsideFactor(*found);
+  }
+  return noise;
+}
+
+std::string ToText(const Noise& noise) {
+  std::vector<std::string> words;
+  for (const NoiseTerm& term : NoiseTerms()) {
+    if (term.flag != nullptr) {
+      if (noise.*(term.flag)) words.emplace_back(term.name);
+    } else if (noise.*(term.value) != 0) {
+      words.push_back(fmt::format("{}={:.12g}", term.name, noise.*(term.value) / OutsideFactor(term)));
+    }
+  }
+  return words.empty() ? "none" : Join(words, ",");
+}
+
+BrdfFunction WithAperture(const BrdfFunction& brdf, double half_angle, std::size_t channels, double lobe_width) {
+  constexpr int kNodes = 4;
+  constexpr double kNode[kNodes] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
+  constexpr double kWeight[kNodes] = {0.17392742256872692, 0.3260725774312731, 0.3260725774312731, 0.17392742256872692};
+  constexpr int kMostPanels = 32;
+  // Rings at Gauss-Legendre nodes of the radius, sectors at even steps; both finer for lobes narrower than the disc.
+  const int panels = std::clamp(static_cast<int>(std::ceil(half_angle / lobe_width)), 1, kMostPanels);
+  const int sectors = 12 * panels;
+  struct Offset {
+    Vec3 direction;
+    double weight;
+  };
+  std::vector<Offset> offsets;
+  for (int panel = 0; panel < panels; ++panel) {
+    for (int k = 0; k < kNodes; ++k) {
+      const double theta = half_angle * (panel + kNode[k]) / panels;
+      for (int s = 0; s < sectors; ++s) {
+        const double phi = 2 * kPi * (s + (k % 2) * 0.5) / sectors;
+        offsets.push_back({FromSpherical(theta, phi), kWeight[k] * std::sin(theta)});
+      }
+    }
+  }
+  return [=](const Vec3& wi, const Vec3& wo, double* values) {
+    const double tilt = PolarAngle(wo), azimuth = Azimuth(wo);
+    std::vector<double> one(channels);
+    std::fill(values, values + channels, 0.0);
+    double total = 0;
+    for (const Offset& offset : offsets) {
+      const Vec3 w = RotateZ(RotateY(offset.direction, tilt), azimuth);
+      if (w.z <= 0) continue;
+      brdf(wi, w, one.data());
+      total += offset.weight;
+      for (std::size_t c = 0; c < channels; ++c) values[c] += offset.weight * one[c];
+    }
+    for (std::size_t c = 0; c < channels && total > 0; ++c) values[c] /= total;
+  };
+}
+
+BrdfFunction WithMisalignment(const BrdfFunction& brdf, double about_x, double about_y, std::size_t channels) {
+  return [=](const Vec3& wi, const Vec3& wo, double* values) {
+    // The sample turned one way is the directions turned the other way in its frame.
+    const Vec3 sample_wi = RotateX(RotateY(wi, -about_y), -about_x),
+               sample_wo = RotateX(RotateY(wo, -about_y), -about_x);
+    if (sample_wi.z > 0 && sample_wo.z > 0) {
+      brdf(sample_wi, sample_wo, values);
+    } else {
+      std::fill(values, values + channels, 0.0);
+    }
+  };
+}
+
+void AddNoise(const Noise& noise, std::uint64_t seed, Measurement* measurement) {
+  Samples& samples = measurement->samples;
+  if (noise.drift > 0) AddDrift(noise.drift, seed, &samples);
+  if (noise.poisson > 0) {
+    RandomNumbers random(StreamSeed(seed, kPoisson));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double unit = noise.poisson / samples.wi_z[i];
+      for (std::vector<double>& values : samples.values) values[i] = unit * random.Poisson(values[i] / unit);
+    }
+  }
+  RandomNumbers random(seed);
+  for (std::size_t i = 0; i < samples.size() && (noise.multiplicative > 0 || noise.additive > 0); ++i) {
+    for (std::vector<double>& values : samples.values) {
+      if (noise.multiplicative > 0) values[i] *= 1 + noise.multiplicative * random.Normal();
+      if (noise.additive > 0) values[i] += noise.additive * random.Normal();
+    }
+  }
+  if (noise.outliers > 0) AddOutliers(noise.outliers, seed, &samples);
+  for (std::vector<double>& values : samples.values) {
+    for (double& value : values) {
+      if (noise.rectified) value = std::fabs(value);
+      if (noise.quantisation > 0) value = std::round(value / noise.quantisation) * noise.quantisation;
+    }
+  }
+  if (noise.holes > 0) MakeHoles(noise.holes, seed, measurement);
+}
+
+}  // namespace lobefit

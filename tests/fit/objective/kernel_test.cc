@@ -1,0 +1,200 @@
+#include "lobefit/fit/objective/kernel.h"
+
+#include <cmath>
+
+#include "tests/support/synthetic.h"
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/solve.h"
+
+namespace lobefit {
+namespace {
+
+constexpr int kCoordinates = 5 + 6;
+using Jet = ceres::Jet<double, kCoordinates>;
+
+// The whole model and metric written again for Jets, in the most direct form: slope-space GGX, clamped Smith, Schlick,
+// Lambert.
+template <class T>
+T ModelValue(const T* u, std::size_t channel, const Vec3& wi, const Vec3& wo) {
+  using std::exp;
+  using std::sqrt;
+  const Vec3 wh = Normalized(wi + wo);
+  const T a = exp(u[2]), b = u[3], c = exp(u[4]);
+  const auto sigma = [&](const Vec3& w) {
+    const T cu = w.z - u[0] * w.x - u[1] * w.y;
+    const T q1 = a * w.x + b * w.y, q2 = c * w.y;
+    return (cu + sqrt(cu * cu + q1 * q1 + q2 * q2)) / 2.0;
+  };
+  const T y1 = (-wh.x - u[0] * wh.z) / a;
+  const T y2 = (-wh.y - u[1] * wh.z - b * y1) / c;
+  const T k = wh.z * wh.z + y1 * y1 + y2 * y2;
+  const T d = 1.0 / (kPi * a * c * k * k);
+  T gi = wi.z / sigma(wi), go = wo.z / sigma(wo);
+  if (gi > 1.0) gi = T(1.0);
+  if (go > 1.0) go = T(1.0);
+  const double p = std::pow(1 - Dot(wi, wh), 5);
+  const T f0 = u[5 + channel], diffuse = u[8 + channel];
+  return diffuse / kPi + d * gi * go / (4 * wi.z * wo.z) * (f0 + (1.0 - f0) * p);
+}
+
+template <class T>
+T ResidualOf(Metric metric, const T& f, double m, const Vec3& wi) {
+  using std::cbrt;
+  using std::log;
+  switch (TransformOf(metric)) {
+    case Transform::kLog1p:
+      return log(1.0 + f * wi.z) - std::log1p(m * wi.z);
+    case Transform::kCubeRoot:
+      return cbrt(f * wi.z) - std::cbrt(m * wi.z);
+    case Transform::kRelative:
+      return f / m - 1.0;
+    case Transform::kLinear:
+      break;
+  }
+  return (f - m) * wi.z;
+}
+
+TEST(TransformMeasured, IsAccurateToRounding) {
+  std::vector<double> f, cos_i;
+  for (int k = -400; k <= 400; ++k) {
+    const double value = std::pow(10, k / 20.0) * (1 + 0.001 * k);
+    f.insert(f.end(), {value, -value});
+    cos_i.insert(cos_i.end(), {1, 1});
+  }
+  f.push_back(0);
+  cos_i.push_back(1);
+  std::vector<double> root(f.size()), logarithm(f.size());
+  TransformMeasured(Transform::kCubeRoot, f.data(), cos_i.data(), f.size(), root.data());
+  TransformMeasured(Transform::kLog1p, f.data(), cos_i.data(), f.size(), logarithm.data());
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    EXPECT_NEAR(root[i], std::cbrt(f[i]), 0x1p-51 * std::fabs(std::cbrt(f[i]))) << f[i];  // two units in the last place
+    if (f[i] > -0.9) {
+      EXPECT_NEAR(logarithm[i], std::log1p(f[i]), 1e-15 * std::fabs(std::log1p(f[i]))) << f[i];
+    }
+  }
+  EXPECT_EQ(root.back(), 0);
+}
+
+class EveryMetric : public testing::TestWithParam<Metric> {};
+
+TEST_P(EveryMetric, SumsAgreeWithJets) {
+  Recipe recipe = DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "test");
+  recipe.metric = GetParam();
+  // 0 tilt would leave every sample on one side of the clamp; 4 and -2 degrees give both.
+  Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20), StandardLayout(), 0.2, 5);
+  SetAsideForRecipe(recipe, &measurement);
+  const Samples& samples = measurement.samples;
+  const Layout layout(recipe, measurement.channels.names);
+  ASSERT_EQ(layout.size(), static_cast<std::size_t>(kCoordinates));
+  const Problem problem(samples, recipe);
+  std::vector<double> u = layout.FromShapes({{0.4, 0.2, 0.05, 0.03, 0.2}});
+  for (std::size_t i = 5; i < 8; ++i) u[i] = 0.3 + 0.1 * static_cast<double>(i - 5);
+  for (std::size_t i = 8; i < 11; ++i) u[i] = 0.2 - 0.05 * static_cast<double>(i - 8);
+
+  Eigen::Matrix<double, kCoordinates, kCoordinates> expected_h =
+      Eigen::Matrix<double, kCoordinates, kCoordinates>::Zero();
+  Eigen::Matrix<double, kCoordinates, 1> expected_g = Eigen::Matrix<double, kCoordinates, 1>::Zero();
+  double expected_cost = 0;
+  Jet jets[kCoordinates];
+  for (int k = 0; k < kCoordinates; ++k) jets[k] = Jet(u[static_cast<std::size_t>(k)], k);
+  double sum_weight = 0;
+  std::vector<double> weight(samples.size(), 1.0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double sin_i = std::sqrt(1 - samples.wi_z[i] * samples.wi_z[i]),
+                 sin_o = std::sqrt(std::max(0.0, 1 - samples.wo_z[i] * samples.wo_z[i]));
+    if (GetParam() == Metric::kNgan) weight[i] = sin_i * sin_o;
+    if (GetParam() == Metric::kLowLog) weight[i] = sin_i;
+    sum_weight += weight[i];
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double w = weight[i] * static_cast<double>(samples.size()) / sum_weight;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Jet r = ResidualOf(GetParam(), ModelValue(jets, c, samples.wi(i), samples.wo(i)), samples.values[c][i],
+                               samples.wi(i));
+      expected_cost += 0.5 * w * r.a * r.a;
+      expected_g += w * r.a * r.v;
+      expected_h += w * r.v * r.v.transpose();
+    }
+  }
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  ThreadPool pool(2);
+  const double cost = Linearise(problem, layout, u.data(), &pool, &hessian, &gradient);
+  EXPECT_NEAR(cost, expected_cost, 1e-11 * expected_cost);
+  EXPECT_LT((hessian - expected_h).norm(), 1e-10 * expected_h.norm());
+  EXPECT_LT((gradient - expected_g).norm(), 1e-10 * expected_g.norm());
+  // The cost is the same number with and without derivatives.
+  EXPECT_EQ(problem.Sum(layout.ToKernel(u.data()), false, &pool).sum_rho / 2, cost);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryMetric,
+                         testing::Values(Metric::kLog, Metric::kCubeRoot, Metric::kRelative, Metric::kCosineL2,
+                                         Metric::kNgan, Metric::kLowLog));
+
+TEST(Kernel, SameBitsOnOneAndEightThreads) {
+  Recipe recipe = DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "test");
+  GoniometerLayout goniometer = StandardLayout();
+  goniometer.detector_step = DegreesToRadians(6);
+  const Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20), goniometer, 0.2, 5);
+  const Layout layout(recipe, measurement.channels.names);
+  const Problem problem(measurement.samples, recipe);
+  const std::vector<double> u = layout.FromShapes({{0.4, 0.2, 0.05, 0.03, 0.2}});
+  Eigen::MatrixXd h1, h8;
+  Eigen::VectorXd g1, g8;
+  ThreadPool one(1), eight(8);
+  const double c1 = Linearise(problem, layout, u.data(), &one, &h1, &g1);
+  const double c8 = Linearise(problem, layout, u.data(), &eight, &h8, &g8);
+  EXPECT_EQ(c1, c8);
+  EXPECT_TRUE(h1 == h8);
+  EXPECT_TRUE(g1 == g8);
+}
+
+TEST(Kernel, LossesWeighASampleOverItsChannels) {
+  Recipe recipe = DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "test");
+  const Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20), StandardLayout(), 0.2, 5);
+  ThreadPool pool(1);
+  for (const Loss loss : {Loss::kHuber, Loss::kCauchy, Loss::kTukey}) {
+    recipe.loss = loss;
+    recipe.loss_scale = 0.05;
+    const Layout layout(recipe, measurement.channels.names);
+    const Problem problem(measurement.samples, recipe);
+    std::vector<double> u = layout.FromShapes({{0.33, 0.14, 0.05, 0.01, 0.3}});
+    std::fill(u.begin() + 5, u.begin() + 8, 0.4);
+    std::fill(u.begin() + 8, u.end(), 0.1);
+    Eigen::MatrixXd hessian;
+    Eigen::VectorXd gradient;
+    Linearise(problem, layout, u.data(), &pool, &hessian, &gradient);
+    // The gradient is the derivative of the cost, by central differences.
+    for (std::size_t k = 0; k < u.size(); ++k) {
+      const double step = 1e-6;
+      std::vector<double> up = u, down = u;
+      up[k] += step;
+      down[k] -= step;
+      const double difference = (problem.Sum(layout.ToKernel(up.data()), false, &pool).sum_rho -
+                                 problem.Sum(layout.ToKernel(down.data()), false, &pool).sum_rho) /
+                                (4 * step);
+      EXPECT_NEAR(gradient(static_cast<Eigen::Index>(k)), difference, 1e-5 * gradient.norm()) << k;
+    }
+  }
+}
+
+TEST(Kernel, APerfectModelHasResidualsOfExactlyZero) {
+  const SyntheticCase truth = OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20);
+  Recipe recipe = DefaultRecipe(truth.model, "test");
+  Measurement measurement = Synthetic(truth, StandardLayout(), 0, 1);
+  const Layout layout(recipe, measurement.channels.names);
+  std::vector<double> u =
+      layout.FromShapes({{0.3, 0.12, DegreesToRadians(4), DegreesToRadians(-2), DegreesToRadians(20)}});
+  std::copy(truth.values[5].begin(), truth.values[5].end(), u.begin() + 5);
+  std::copy(truth.values[6].begin(), truth.values[6].end(), u.begin() + 8);
+  const Problem problem(measurement.samples, recipe);
+  ThreadPool pool(1);
+  EXPECT_LT(problem.Sum(layout.ToKernel(u.data()), false, &pool).sum_rho, 1e-28 * static_cast<double>(problem.size()));
+}
+
+}  // namespace
+}  // namespace lobefit

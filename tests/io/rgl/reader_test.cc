@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/support/temporary_file.h"
+#include "tests/support/test_brdf.h"
+#include <gtest/gtest.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/io/read.h"
+#include "lobefit/io/rgl/angles.h"
+#include "lobefit/io/rgl/brdf.h"
+#include "lobefit/io/rgl/writer.h"
+
+namespace lobefit {
+namespace {
+
+// Channels are 1, 1/2 and 1/4 of the material.
+BrdfFunction Rgb(const TestBrdf& brdf) {
+  return [brdf](const Vec3& wi, const Vec3& wo, double* values) {
+    values[0] = brdf(wi, wo);
+    values[1] = values[0] / 2;
+    values[2] = values[0] / 4;
+  };
+}
+
+const Channels kRgb = {{"R", "G", "B"}, {}};
+
+TEST(RglAngles, PublishedPoints) {
+  EXPECT_NEAR(RglX(0.3), 0.437019, 5e-7);
+  EXPECT_NEAR(RglY(1.0), 0.659155, 5e-7);
+  EXPECT_NEAR(RglTheta(RglX(0.7)), 0.7, 1e-15);
+  EXPECT_NEAR(RglPhi(RglY(-2.0)), -2.0, 1e-15);
+}
+
+struct Errors {
+  double median, percentile_90;
+};
+
+// Relative errors of the file as a renderer evaluates it, at random pairs of directions within 75 and 80 degrees.
+Errors ErrorsOf(const RglBrdf& file, const TestBrdf& brdf) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const auto direction = [&](double limit) {
+    const double z = 1 - uniform(random) * (1 - std::cos(limit));
+    return FromSpherical(std::acos(z), 2 * kPi * uniform(random));
+  };
+  std::vector<double> errors;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 wo = direction(DegreesToRadians(75)), wi = direction(DegreesToRadians(80));
+    double values[3];
+    file.Evaluate(wi, wo, values);
+    errors.push_back(std::fabs(values[0] / brdf(wi, wo) - 1));
+    EXPECT_NEAR(values[2] / values[0], 0.25, 1e-5);
+  }
+  std::sort(errors.begin(), errors.end());
+  return {errors[errors.size() / 2], errors[errors.size() * 9 / 10]};
+}
+
+TEST(Rgl, ATiltedMaterialComesBackAsARendererSeesIt) {
+  const TestBrdf brdf;
+  const TemporaryFile file;
+  WriteRgl(Rgb(brdf), kRgb, {}, file.path());
+  const MappedFile mapped(file.path());
+  const Errors errors = ErrorsOf(RglBrdf(file.path(), mapped.bytes()), brdf);
+  RecordProperty("median", std::to_string(errors.median));
+  RecordProperty("percentile_90", std::to_string(errors.percentile_90));
+  EXPECT_LT(errors.median, 0.006);
+  EXPECT_LT(errors.percentile_90, 0.025);
+}
+
+// On the nodes that the file lists there is no interpolation: only the rounding of float32 angles and values.
+TEST(Rgl, SamplesStandOnTheirNodes) {
+  const TestBrdf brdf;
+  const TemporaryFile file;
+  RglWriteOptions options;
+  options.azimuths = 8;
+  options.polar_angles = 6;
+  options.density_size = 32;
+  options.table_size = 16;
+  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  const Measurement m = ReadMeasurement(file.path());
+  EXPECT_EQ(m.format, "rgl");
+  EXPECT_FALSE(m.isotropic);
+  EXPECT_EQ(m.samples.size() + m.set_aside.total(), 9U * 6 * 16 * 16);
+  EXPECT_GT(m.samples.size(), 5000U);
+  for (std::size_t i = 0; i < m.samples.size(); ++i) {
+    const double expected = brdf(m.samples.wi(i), m.samples.wo(i));
+    ASSERT_NEAR(m.samples.values[1][i] / (expected / 2), 1, 2e-4) << i;
+  }
+}
+
+// The solid angles turn a sum over the samples of one viewer into an integral: the albedo.
+TEST(Rgl, SolidAnglesIntegrate) {
+  TestBrdf brdf;
+  brdf.tilt = 0;
+  const TemporaryFile file;
+  RglWriteOptions options;
+  options.azimuths = 4;
+  options.polar_angles = 3;
+  options.density_size = 128;
+  options.table_size = 128;
+  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  const Measurement m = ReadMeasurement(file.path());
+  double sum = 0, norm = 0;
+  for (std::size_t i = 0; i < m.samples.size(); ++i) {
+    if (RadiansToDegrees(PolarAngle(m.samples.wo(i))) > 60) continue;
+    sum += m.samples.solid_angle[i] * m.samples.wi_z[i] * m.samples.values[0][i];
+    norm += m.samples.solid_angle[i] * m.samples.wi_z[i] / kPi;
+  }
+  // Quadrature over the same viewers: normal direction and 44.35 degrees, in the file's own weights.
+  double exact = 0, viewers = 0;
+  for (const auto& [theta_deg, low, high] : {std::array{0.0, 0.0, 22.175}, std::array{44.35, 22.175, 66.525}}) {
+    const double share = std::cos(DegreesToRadians(low)) - std::cos(DegreesToRadians(high));
+    for (int p = 0; p < 4; ++p) {
+      const Vec3 wo = FromSpherical(DegreesToRadians(theta_deg), -kPi + p * kPi / 2);
+      double albedo = 0;
+      constexpr int kN = 200;
+      for (int a = 0; a < kN; ++a) {
+        for (int b = 0; b < kN; ++b) {
+          const double cos2 = (a + 0.5) / kN;
+          const Vec3 wi = FromSpherical(std::acos(std::sqrt(cos2)), (b + 0.5) / kN * 2 * kPi);
+          albedo += kPi / (kN * kN) * brdf(wi, wo);
+        }
+      }
+      exact += share * albedo;
+      viewers += share;
+    }
+  }
+  EXPECT_NEAR(sum / norm / (exact / viewers), 1, 0.02);
+}
+
+TEST(Rgl, IsotropicFilesHaveOneAzimuth) {
+  TestBrdf brdf;
+  brdf.alpha_y = brdf.alpha_x = 0.2;
+  brdf.tilt = 0;
+  const TemporaryFile file;
+  RglWriteOptions options;
+  options.isotropic = true;
+  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  const Measurement m = ReadMeasurement(file.path());
+  EXPECT_TRUE(m.isotropic);
+  const MappedFile mapped(file.path());
+  const Errors errors = ErrorsOf(RglBrdf(file.path(), mapped.bytes()), brdf);
+  EXPECT_LT(errors.median, 0.004);
+  EXPECT_LT(errors.percentile_90, 0.02);
+}
+
+// The file with only its first `azimuths` azimuths.
+std::string Cut(const std::filesystem::path& path, std::uint64_t azimuths) {
+  const MappedFile mapped(path);
+  const TensorFile file(path, mapped.bytes());
+  std::vector<TensorOutput> fields;
+  for (const auto& [name, type, ndim] : {std::tuple{"phi_i", TensorType::kFloat32, 1},
+                                         {"theta_i", TensorType::kFloat32, 1},
+                                         {"ndf", TensorType::kFloat32, 2},
+                                         {"sigma", TensorType::kFloat32, 2},
+                                         {"vndf", TensorType::kFloat32, 4},
+                                         {"rgb", TensorType::kFloat32, 5},
+                                         {"jacobian", TensorType::kUint8, 1}}) {
+    const TensorField& field = file.Get(name, type, static_cast<std::size_t>(ndim));
+    TensorOutput output = {name, type, field.shape, field.bytes};
+    const std::string_view key = name;
+    if (key == "phi_i" || key == "vndf" || key == "rgb") {
+      output.bytes = field.bytes.substr(0, field.bytes.size() / field.shape[0] * azimuths);
+      output.shape[0] = azimuths;
+    }
+    fields.push_back(output);
+  }
+  std::ostringstream out;
+  WriteTensorFile(out, fields);
+  return out.str();
+}
+
+// A surface that a half turn leaves as it is may store half of the viewers, phi in [-pi, 0]; one with two mirror planes
+// a quarter, phi in [-pi, -pi/2]. Viewers outside follow from those inside. A table of the whole circle gives other
+// values there by up to 2 %, since its nodes lie elsewhere on the lobe: both are held against the truth.
+TEST(Rgl, ReducedFilesStandForTheWholeCircle) {
+  TestBrdf brdf;
+  brdf.tilt = brdf.rotation = 0;
+  const TemporaryFile file;
+  RglWriteOptions options;
+  options.azimuths = 8;
+  options.polar_angles = 12;
+  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  const MappedFile mapped(file.path());
+  const RglBrdf whole(file.path(), mapped.bytes());
+  const Errors errors_whole = ErrorsOf(whole, brdf);
+  for (const auto& [azimuths, reduction] : {std::pair<std::uint64_t, const char*>{5, "2"}, {3, "4"}}) {
+    const std::string bytes = Cut(file.path(), azimuths);
+    const RglBrdf reduced("reduced", bytes);
+    for (int i = 0; i < 500; ++i) {
+      const Vec3 wi = FromSpherical(0.1 + 1.2 * std::fmod(i * 0.618, 1.0), i * 2.4);
+      const double theta_o = 0.05 + 1.2 * std::fmod(i * 0.414, 1.0);
+      const double phi_o = -kPi + (kPi / (azimuths == 5 ? 1 : 2)) * std::fmod(i * 0.732, 1.0);
+      const Vec3 wo = FromSpherical(theta_o, phi_o);
+      double inside[3], outside[3];
+      whole.Evaluate(wi, wo, inside);
+      reduced.Evaluate(wi, wo, outside);
+      ASSERT_EQ(inside[0], outside[0]) << i;
+      reduced.Evaluate({-wi.x, -wi.y, wi.z}, {-wo.x, -wo.y, wo.z}, outside);
+      ASSERT_EQ(inside[0], outside[0]) << i;
+      if (azimuths == 5) continue;
+      reduced.Evaluate({-wi.x, wi.y, wi.z}, {-wo.x, wo.y, wo.z}, outside);
+      ASSERT_EQ(inside[0], outside[0]) << i;
+      reduced.Evaluate({wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z}, outside);
+      ASSERT_EQ(inside[0], outside[0]) << i;
+    }
+    const Errors errors = ErrorsOf(reduced, brdf);
+    EXPECT_LT(errors.median, 1.2 * errors_whole.median) << reduction;
+    EXPECT_LT(errors.percentile_90, 1.2 * errors_whole.percentile_90) << reduction;
+
+    const Measurement m = ReadMeasurement(TemporaryFile(bytes).path());
+    EXPECT_EQ(m.conventions.at("rgl-reduction"), reduction);
+    EXPECT_FALSE(m.isotropic);
+    for (std::size_t i = 0; i < m.samples.size(); i += 11) {
+      ASSERT_NEAR(m.samples.values[0][i] / brdf(m.samples.wi(i), m.samples.wo(i)), 1, 2e-4);
+    }
+  }
+}
+
+TEST(Rgl, SpectralFilesKeepTheirWavelengths) {
+  const TestBrdf brdf;
+  const TemporaryFile file;
+  RglWriteOptions options;
+  options.azimuths = 4;
+  options.polar_angles = 3;
+  options.table_size = 8;
+  const BrdfFunction spectral = [&](const Vec3& wi, const Vec3& wo, double* values) {
+    values[0] = brdf(wi, wo);
+    values[1] = 2 * values[0];
+  };
+  WriteRgl(spectral, {{"450nm", "650.5nm"}, {450, 650.5}}, options, file.path());
+  const Measurement m = ReadMeasurement(file.path());
+  EXPECT_EQ(m.channels.names, (std::vector<std::string>{"450nm", "650.5nm"}));
+  for (std::size_t i = 0; i < m.samples.size(); ++i) {
+    EXPECT_NEAR(m.samples.values[1][i] / m.samples.values[0][i], 2, 1e-5);
+  }
+  options.kind = RglKind::kRgb;
+  EXPECT_THROW(WriteRgl(spectral, {{"450nm", "650.5nm"}, {450, 650.5}}, options, file.path()), UsageError);
+}
+
+}  // namespace
+}  // namespace lobefit
