@@ -11,7 +11,8 @@ namespace {
 
 std::vector<Quantity> AllQuantities() {
   std::vector<Quantity> all;
-  for (auto* part : {WalterQuantities, HeitzQuantities, SelQuantities, DEonQuantities, LoubetQuantities}) {
+  for (auto* part :
+       {WalterQuantities, HeitzQuantities, SelQuantities, DEonQuantities, LoubetQuantities, InstrumentQuantities}) {
     for (Quantity& quantity : part()) all.push_back(std::move(quantity));
   }
   std::sort(all.begin(), all.end(), [](const Quantity& a, const Quantity& b) { return a.name < b.name; });

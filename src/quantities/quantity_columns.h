@@ -17,6 +17,7 @@ std::vector<Quantity> HeitzQuantities();
 std::vector<Quantity> SelQuantities();
 std::vector<Quantity> DEonQuantities();
 std::vector<Quantity> LoubetQuantities();
+std::vector<Quantity> InstrumentQuantities();
 
 // Input columns.
 InputColumn Positive(const std::string& name, const std::string& meaning);
