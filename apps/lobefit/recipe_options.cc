@@ -71,6 +71,7 @@ void RecipeOverrides::AddTo(CLI::App* app, const std::string& group) {
 
 void RecipeOverrides::Apply(Recipe* recipe) const {
   Override(metric_, "--metric", MetricChoices(), &recipe->metric);
+  recipe->metric_given = recipe->metric_given || !metric_.empty();
   Override(weighting_, "--weighting", WeightingChoices(), &recipe->weighting);
   if (theta_max_deg_ > 0) recipe->theta_max = DegreesToRadians(theta_max_deg_);
 }
@@ -100,6 +101,7 @@ void FittedModel::AddTo(CLI::App* app) {
 Recipe FittedModel::Choose(const Model& truth) const {
   Recipe recipe = recipe_.empty() ? DefaultRecipe(truth, "model of the truth") : LoadRecipe(recipe_);
   Override(metric_, "--metric", MetricChoices(), &recipe.metric);
+  recipe.metric_given = recipe.metric_given || !metric_.empty();
   return recipe;
 }
 

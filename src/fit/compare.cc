@@ -47,7 +47,7 @@ Measurement Part(const Measurement& measurement, const std::vector<std::size_t>&
 double ErrorOfBlack(const Comparison& comparison, const Samples& samples) {
   if (comparison.metric == Metric::kRelative) return 1;
   const std::vector<std::vector<double>> black(samples.values.size(), std::vector<double>(samples.size()));
-  return std::sqrt(SumSquares(comparison.metric, comparison.weighting, true, samples, black).MeanSquare());
+  return std::sqrt(SumSquares(comparison.metric, {}, comparison.weighting, true, samples, black).MeanSquare());
 }
 
 // Fits and held-out parts of one fold.
@@ -82,9 +82,15 @@ std::vector<Fold> MakeFolds(const Measurement& measurement, const CompareOptions
   return folds;
 }
 
-void FitAll(const Recipe& recipe, const CompareOptions& options, Measurement* measurement, Recipe* used,
+void FitAll(const Recipe& wanted, const CompareOptions& options, Metric judge, Measurement* measurement, Recipe* used,
             JudgedModel* model) {
   const auto start = std::chrono::steady_clock::now();
+  Recipe recipe = wanted;
+  recipe.metric_given = true;  // that of one fold must not differ from another's
+  if (recipe.metric != judge) {
+    model->remarks.push_back(fmt::format("is fitted under metric {} and judged under {}, which it does not minimise",
+                                         RowOf(recipe.metric).name, RowOf(judge).name));
+  }
   *used = WithMetals(recipe, measurement->channels.wavelengths_nm, measurement->channels.size());
   model->material = FitRecipe(recipe, options.fit, measurement);
   // A reason says that the recipe was chosen automatically.
@@ -122,8 +128,8 @@ void Judge(const Comparison& comparison, const Measurement& measurement, double 
            JudgedModel* model) {
   const Samples& samples = measurement.samples;
   const std::vector<std::vector<double>> f_r = PredictModel(*model, samples, pool);
-  model->errors = ErrorsUnderAllMetrics(comparison.weighting, samples, f_r, pool);
-  const double mean_square = SumSquares(comparison.metric, comparison.weighting, true, samples, f_r).MeanSquare();
+  model->errors = ErrorsUnderAllMetrics({}, comparison.weighting, samples, f_r, pool);
+  const double mean_square = SumSquares(comparison.metric, {}, comparison.weighting, true, samples, f_r).MeanSquare();
   const double floor = 1e-12 * black;
   const double n = static_cast<double>(comparison.residuals), k = static_cast<double>(model->free_parameters) + 1;
   const double deviance = n * std::log(std::max(mean_square, floor * floor));
@@ -147,7 +153,7 @@ FoldResult RunFold(const Comparison& comparison, const Fold& fold, const Recipe*
     Measurement training = fold.training;
     JudgedModel model = given;
     if (recipe != nullptr) model.material = FitRecipe(*recipe, options, &training);
-    result.sum = SumSquares(comparison.metric, comparison.weighting, true, fold.test.samples,
+    result.sum = SumSquares(comparison.metric, {}, comparison.weighting, true, fold.test.samples,
                             PredictModel(model, fold.test.samples, &alone));
   } catch (const InputError& error) {
     result.remark = error.what();
@@ -213,8 +219,9 @@ void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Co
   };
   std::size_t chosen = best;
   for (const std::size_t m : eligible) {
-    const bool simpler = models[m].free_parameters < models[chosen].free_parameters;
-    if (simpler && models[m].excess <= tolerance(models[m])) chosen = m;
+    if (!(models[m].excess <= tolerance(models[m]))) continue;
+    const std::size_t numbers = models[m].free_parameters, before = models[chosen].free_parameters;
+    if (numbers < before || (numbers == before && models[m].excess < models[chosen].excess)) chosen = m;
   }
   comparison->recommended = chosen;
   const JudgedModel& model = models[chosen];
@@ -264,6 +271,8 @@ Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMa
   comparison.weighting = EffectiveWeighting(recipes[0].weighting, measurement->samples);
   comparison.samples_read = measurement->samples.size() + measurement->set_aside.total();
   comparison.theta_max = kPi;
+  if (comparison.metric == Metric::kAsinh)
+    throw UsageError("metric 'asinh' is made for one fit's noise; compare under --metric log");
   for (const Recipe& recipe : recipes) {
     SetAsideForRecipe(recipe, measurement);
     comparison.theta_max = std::min(comparison.theta_max, recipe.theta_max);
@@ -281,7 +290,7 @@ Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMa
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
     JudgedModel& model = comparison.models[m];
     if (m < recipes.size()) {
-      FitAll(recipes[m], options, measurement, &used[m], &model);
+      FitAll(recipes[m], options, comparison.metric, measurement, &used[m], &model);
     } else {
       const GivenMaterial& material = given[m - recipes.size()];
       if (material.material.channels.size() != samples.values.size()) {

@@ -12,6 +12,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/inference/misfit.h"
+#include "lobefit/fit/inference/noise_bias.h"
 #include "lobefit/fit/inference/rivals.h"
 #include "lobefit/fit/inference/uncertainty.h"
 #include "lobefit/fit/objective/coordinates.h"
@@ -22,6 +23,7 @@
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/measurement/isotropy.h"
+#include "lobefit/measurement/noise.h"
 
 namespace lobefit {
 namespace {
@@ -134,6 +136,33 @@ Minimum Describe(const Layout& layout, const DistinctMinimum& minimum) {
   return described;
 }
 
+// A recipe's search on all samples, and what it found.
+struct Found {
+  Found(const Recipe& recipe, const Measurement& measurement, const Samples& samples, const Incidences& incidences,
+        const FitOptions& options, ThreadPool* pool)
+      : layout(recipe, measurement.channels.names), problem(samples, recipe) {
+    if (samples.size() * layout.channels() < layout.size()) {
+      throw InputError(
+          fmt::format("{}: {} usable samples in {} channels are fewer than the {} free parameters of recipe '{}'; use "
+                      "a simpler recipe",
+                      measurement.source, samples.size(), layout.channels(), layout.size(), recipe.name));
+    }
+    minima = FindMinima(problem, layout, samples, options, pool);
+    DescendReweighted(layout, pool, &problem, &minima);
+    if (minima.empty()) {
+      throw InputError(measurement.source +
+                       ": no start of the fit has a finite cost; look at the values with `lobefit info`");
+    }
+    uncertainty = EstimateUncertainty(problem, layout, best().u, incidences, pool);
+  }
+  const Solution& best() const { return minima[0].solution; }
+
+  Layout layout;
+  Problem problem;
+  std::vector<DistinctMinimum> minima;
+  Uncertainty uncertainty;
+};
+
 // The cost of a model that reflects nothing.
 double CostOfBlack(const Problem& problem, KernelModel kernel, ThreadPool* pool) {
   for (KernelLobe& lobe : kernel.lobes) {
@@ -184,39 +213,60 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   recipe.weighting = EffectiveWeighting(recipe.weighting, measurement->samples);
   const std::size_t read = measurement->samples.size() + measurement->set_aside.total();
   SetAsideForRecipe(recipe, measurement);
+  if (const std::optional<double> plane = PlaneAzimuth(measurement->samples); plane && !measurement->isotropic)
+    recipe.plane_azimuth = *plane;
   bool any_azimuth = true;
   for (const Lobe& lobe : recipe.model.lobes) any_azimuth = any_azimuth && IsRound(lobe.ndf) && !IsTilted(lobe.ndf);
   Samples spread;
   if (measurement->isotropic && !any_azimuth) spread = SpreadOverAzimuths(measurement->samples);
   const Samples& samples = spread.size() > 0 ? spread : measurement->samples;
-  const Layout layout(recipe, measurement->channels.names);
-  if (samples.size() * layout.channels() < layout.size()) {
-    throw InputError(
-        fmt::format("{}: {} usable samples in {} channels are fewer than the {} free parameters of recipe '{}'; use a "
-                    "simpler recipe",
-                    measurement->source, samples.size(), layout.channels(), layout.size(), recipe.name));
-  }
   ThreadPool pool(std::max(1, options.threads));
-  const Problem problem(samples, recipe);
-
+  const Incidences incidences = GroupByIncidence(*measurement);
+  std::vector<std::string> remarks = measurement->remarks;
   const auto search_time = std::chrono::steady_clock::now();
-  const std::vector<DistinctMinimum> minima = FindMinima(problem, layout, samples, options, &pool);
+  // Noise is estimated from a fit's residuals: first under a metric that takes every value.
+  const bool needs_noise = recipe.metric == Metric::kAsinh && !(recipe.noise.floor > 0 && recipe.noise.relative > 0);
+  if (needs_noise) recipe.metric = Metric::kCubeRoot;
+  std::optional<Found> found;
+  found.emplace(recipe, *measurement, samples, incidences, options, &pool);
+  // Tables with cells of known size are computed from readings; rows of a goniometer are readings. Where only the
+  // magnitudes of noise about zero were kept, no metric helps.
+  const bool readings = samples.solid_angle.empty() && spread.size() == 0 && !FindRectifiedNoise(*measurement);
+  if (readings || needs_noise) {
+    const std::optional<NoiseBias> bias = PredictNoiseBias(found->problem, found->layout, found->best().u,
+                                                           found->uncertainty.covariance, samples, incidences);
+    const bool may = needs_noise || (!recipe.metric_given && recipe.metric == Recipe().metric);
+    if (needs_noise && !bias) {
+      throw InputError(
+          measurement->source +
+          ": metric 'asinh' takes its knee from the noise of the values, and they show none that can be told "
+          "from the model; use --metric log or cube-root");
+    }
+    if (bias && may && (needs_noise || WantsAsinh(*bias))) {
+      if (!needs_noise) remarks.push_back(ToSwitchRemark(*bias, recipe.metric));
+      recipe.metric = Metric::kAsinh;
+      recipe.noise = NoiseForAsinh(bias->noise);
+      found.emplace(recipe, *measurement, samples, incidences, options, &pool);
+    } else if (bias && recipe.metric_given) {
+      const std::string remark = ToBiasRemark(*bias, recipe.metric);
+      if (!remark.empty()) remarks.push_back(remark);
+    }
+  }
   const double solve_s = SecondsSince(search_time);
-  if (minima.empty())
-    throw InputError(measurement->source +
-                     ": no start of the fit has a finite cost; look at the values with `lobefit info`");
+  const Layout& layout = found->layout;
+  const Problem& problem = found->problem;
+  const std::vector<DistinctMinimum>& minima = found->minima;
+  const Uncertainty& uncertainty = found->uncertainty;
 
   const Solution& best = minima[0].solution;
   Material material;
   material.model = recipe.model;
   material.channels = measurement->channels.names;
   material.wavelengths_nm = measurement->channels.wavelengths_nm;
-  const Incidences incidences = GroupByIncidence(*measurement);
-  const Uncertainty uncertainty = EstimateUncertainty(problem, layout, best.u, incidences, &pool);
   material.degenerate = uncertainty.degenerate;
   Report(layout, best.u, uncertainty, &material);
   const bool has_rival = FlagRivals(problem, layout, samples, minima, &pool, &material);
-  material.remarks = measurement->remarks;
+  material.remarks = remarks;
   material.misfit = TestMisfit(problem, layout, best.u, samples, incidences);
   if (material.misfit->flagged) material.remarks.push_back(ToRemark(*material.misfit));
   material.samples_read = read;
@@ -228,7 +278,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   }
   const KernelModel kernel = layout.ToKernel(best.u.data());
   material.errors = ErrorsUnderAllMetrics(
-      recipe.weighting, samples,
+      recipe.noise, recipe.weighting, samples,
       [&](std::size_t begin, std::size_t end, std::vector<std::vector<double>>* f_r) {
         ModelValues(problem.kernel_samples(), kernel, begin, end, f_r);
       },

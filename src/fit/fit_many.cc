@@ -4,13 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/core/brdf/lobe.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/search.h"
 #include "lobefit/fit/search/solve.h"
 #include "lobefit/fit/search/starts.h"
 
@@ -75,7 +74,7 @@ LinearFit SolveForShape(const Samples& samples, const Layout& layout, const std:
 std::vector<double> BestStart(const Samples& samples, const Layout& layout) {
   const Recipe& recipe = layout.recipe();
   const Ndf ndf = recipe.model.lobes[0].ndf;
-  std::vector<double> weight = LinearisedWeights(samples, recipe.metric);
+  std::vector<double> weight = LinearisedWeights(samples, recipe.metric, recipe.noise);
   // Those are for f cos_theta_i.
   for (std::size_t i = 0; i < weight.size(); ++i) weight[i] *= samples.wi_z[i] * samples.wi_z[i];
   std::vector<Ellipsoid> axes = {{1, 1, 0, 0, ndf == Ndf::kGgxTilted ? -recipe.plane_azimuth : 0.0}};
@@ -103,59 +102,16 @@ std::vector<double> BestStart(const Samples& samples, const Layout& layout) {
   return best;
 }
 
-// Levenberg-Marquardt on J^T J and J^T r. A coordinate at its bound whose cost falls outwards is held there for the
-// step.
-SmallFit Descend(const Problem& problem, const Layout& layout, std::vector<double> u, const FitManyOptions& options) {
+SmallFit DescendFrom(const Layout& layout, const std::vector<double>& start, const FitManyOptions& options,
+                     Problem* problem) {
   ThreadPool alone(1);
-  const auto n = static_cast<Eigen::Index>(layout.size());
-  Eigen::MatrixXd hessian, tried_hessian, damped;
-  Eigen::VectorXd gradient, tried_gradient, step;
-  SmallFit fit;
-  fit.cost = Linearise(problem, layout, u.data(), &alone, &hessian, &gradient);
-  double damping = 1e-3, growth = 2;
-  std::vector<double> tried(u.size());
-  for (; fit.iterations < options.max_iterations && std::isfinite(fit.cost); ++fit.iterations) {
-    damped = hessian;
-    Eigen::VectorXd right = -gradient;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Coordinate& c = layout.coordinates()[static_cast<std::size_t>(i)];
-      const double at = u[static_cast<std::size_t>(i)];
-      damped(i, i) += damping * damped(i, i) + 1e-300;
-      if ((at <= c.low && right(i) < 0) || (at >= c.high && right(i) > 0)) {
-        damped.row(i).setZero();
-        damped.col(i).setZero();
-        damped(i, i) = 1;
-        right(i) = 0;
-      }
-    }
-    step = damped.ldlt().solve(right);
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      const Coordinate& c = layout.coordinates()[i];
-      tried[i] = std::clamp(u[i] + step(static_cast<Eigen::Index>(i)), c.low, c.high);
-    }
-    const double cost = Linearise(problem, layout, tried.data(), &alone, &tried_hessian, &tried_gradient);
-    if (!(cost < fit.cost)) {
-      // At the minimum to rounding, or too long a step.
-      if (step.dot(-gradient) <= options.function_tolerance * fit.cost || damping > 1e12) {
-        fit.converged = true;
-        break;
-      }
-      damping *= growth;
-      growth *= 2;
-      continue;
-    }
-    const double decrease = fit.cost - cost;
-    fit.converged = decrease <= options.function_tolerance * fit.cost;
-    u = tried;
-    fit.cost = cost;
-    hessian.swap(tried_hessian);
-    gradient.swap(tried_gradient);
-    damping = std::max(damping / 5, 1e-12);
-    growth = 2;
-    if (fit.converged) break;
-  }
-  fit.values = layout.Report(u.data());
-  return fit;
+  const SolveOptions solve = {options.max_iterations, options.function_tolerance, false};
+  std::vector<DistinctMinimum> minimum(1);
+  minimum[0].solution = Solve(*problem, layout, start, solve, &alone);
+  DescendReweighted(layout, &alone, problem, &minimum);
+  if (minimum.empty()) return {layout.Report(start.data())};
+  const Solution& solution = minimum[0].solution;
+  return {layout.Report(solution.u.data()), solution.cost, solution.converged, solution.iterations};
 }
 
 }  // namespace
@@ -179,9 +135,9 @@ std::vector<SmallFit> FitMany(const Recipe& recipe, const std::vector<const Samp
   pool.Run((samples.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
     for (std::size_t k = chunk * kChunk; k < std::min(samples.size(), (chunk + 1) * kChunk); ++k) {
       if (samples[k]->size() * layout.channels() < layout.size()) continue;
-      const Problem problem(*samples[k], recipe);
+      Problem problem(*samples[k], recipe);
       const std::vector<double> start = BestStart(*samples[k], layout);
-      if (!start.empty()) fits[k] = Descend(problem, layout, start, options);
+      if (!start.empty()) fits[k] = DescendFrom(layout, start, options, &problem);
     }
   });
   return fits;

@@ -24,7 +24,7 @@ std::string KnownFormats() {
 
 void TreatNoise(const ReadOptions& options, Measurement* measurement) {
   if (options.noise_floor) {
-    WeighByNoiseFloor(*options.noise_floor, measurement);
+    AddNoiseFloor(*options.noise_floor, &measurement->samples);
     measurement->conventions["noise-floor"] = FormatDouble(*options.noise_floor) + " (option)";
     return;
   }

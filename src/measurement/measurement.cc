@@ -16,6 +16,7 @@ void ForEachArray(Samples& samples, Function&& function) {
   }
   for (std::vector<double>& array : samples.values) function(array);
   if (!samples.weight.empty()) function(samples.weight);
+  if (!samples.sigma.empty()) function(samples.sigma);
   if (!samples.solid_angle.empty()) function(samples.solid_angle);
   function(samples.origin);
 }
@@ -54,6 +55,7 @@ Samples Samples::Subset(const std::vector<std::size_t>& indices) const {
   pick(wo_z, subset.wo_z);
   for (std::size_t c = 0; c < values.size(); ++c) pick(values[c], subset.values[c]);
   pick(weight, subset.weight);
+  pick(sigma, subset.sigma);
   pick(solid_angle, subset.solid_angle);
   pick(origin, subset.origin);
   return subset;

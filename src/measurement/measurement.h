@@ -28,8 +28,12 @@ struct Samples {
   std::vector<double> wi_x, wi_y, wi_z, wo_x, wo_y, wo_z;
   // values[channel][sample]: f_r in 1/sr, no cosine; finite; may be negative (noise).
   std::vector<std::vector<double>> values;
-  // Statistical weight from stated uncertainties or repetitions, mean 1. Empty: all 1.
+  // Statistical weight that the file gives, mean 1. Empty: all 1.
   std::vector<double> weight;
+  // Stated standard deviation of f_r, 1/sr, for all channels: from the file, from repetitions, from the instrument's
+  // floor. What it weighs depends on the metric of the fit and on the model's value there
+  // (fit/objective/sigma_weights.h). Empty: not known.
+  std::vector<double> sigma;
   // Measure of the sample's cell in the space of direction pairs (any constant factor), for weighting by solid angle.
   // Empty: not known, the file lists directions without cells.
   std::vector<double> solid_angle;
@@ -40,13 +44,13 @@ struct Samples {
   Vec3 wi(std::size_t i) const { return {wi_x[i], wi_y[i], wi_z[i]}; }
   Vec3 wo(std::size_t i) const { return {wo_x[i], wo_y[i], wo_z[i]}; }
 
-  // Resizes every array that is in use (values, and weight and solid_angle where not empty) to `count` samples.
+  // Resizes every array that is in use (values, and weight, sigma and solid_angle where not empty) to `count` samples.
   void Resize(std::size_t count);
   // Keeps the samples i with keep[i] != 0, in order.
   void Keep(const std::vector<std::uint8_t>& keep);
   // The samples at `indices`, in that order.
   Samples Subset(const std::vector<std::size_t>& indices) const;
-  // Adds one sample; values[c] for each channel. Does not touch weight and solid_angle.
+  // Adds one sample; values[c] for each channel. Does not touch weight, sigma and solid_angle.
   void Append(const Vec3& wi, const Vec3& wo, const double* channel_values, std::uint32_t origin_index);
 };
 

@@ -6,19 +6,10 @@
 namespace lobefit {
 namespace {
 
-// What overflows or is not a number weighs nothing.
-constexpr double kMostVariance = 1e100;
-
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-double MeanOfChannels(const Samples& samples, std::size_t i) {
-  double sum = 0;
-  for (const std::vector<double>& values : samples.values) sum += std::max(0.0, values[i]);
-  return sum / static_cast<double>(samples.values.size());
 }
 
 // A stretch of a scan. White noise of standard deviation 1 has second differences of variance 6, most of them of
@@ -47,33 +38,15 @@ Stretch DescribeStretch(const double* values, std::size_t count) {
 
 }  // namespace
 
-void WeighBySigma(const std::vector<double>& sigma, Measurement* measurement) {
-  Samples& samples = measurement->samples;
-  if (samples.size() == 0) return;
-  std::vector<double> variance(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double reading = MeanOfChannels(samples, i) * samples.wi_z[i];
-    const double deviation = sigma[i] * samples.wi_z[i] / (1 + reading);
-    variance[i] = deviation * deviation;
-    if (!(variance[i] <= kMostVariance)) variance[i] = kMostVariance;
-  }
-  const double median = Median(variance);
-  // With more than half of the samples free of uncertainty there is nothing to weigh by but the largest.
-  const double floor = median > 0 ? median : *std::max_element(variance.begin(), variance.end());
-  if (!(floor > 0)) return;
-  if (samples.weight.empty()) samples.weight.assign(samples.size(), 1.0);
-  double sum = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples.weight[i] *= std::max(floor / (variance[i] + floor), 1e-12);
-    sum += samples.weight[i];
-  }
-  for (double& weight : samples.weight) weight *= static_cast<double>(samples.size()) / sum;
+void AddSigma(const std::vector<double>& sigma, Samples* samples) {
+  if (samples->sigma.empty()) samples->sigma.assign(samples->size(), 0.0);
+  for (std::size_t i = 0; i < sigma.size(); ++i) samples->sigma[i] = std::hypot(samples->sigma[i], sigma[i]);
 }
 
-void WeighByNoiseFloor(double floor, Measurement* measurement) {
+void AddNoiseFloor(double floor, Samples* samples) {
   std::vector<double> sigma;
-  for (const double cos_i : measurement->samples.wi_z) sigma.push_back(floor / cos_i);
-  WeighBySigma(sigma, measurement);
+  for (const double cos_i : samples->wi_z) sigma.push_back(floor / cos_i);
+  AddSigma(sigma, samples);
 }
 
 std::optional<RectifiedNoise> FindRectifiedNoise(const Measurement& measurement) {

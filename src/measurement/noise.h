@@ -1,4 +1,4 @@
-// Instrument noise: stated uncertainties as weights, a noise floor, noise that was rectified.
+// Instrument noise: stated uncertainties, a noise floor, noise that was rectified.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,13 @@
 
 namespace lobefit {
 
-// Sets the weights from `sigma`, the standard deviation of f_r of each sample: the inverse variance of ln(1 + f_r
-// cos(theta_i)), the default metric's residual. The median variance is added to each, since beyond that the model's
-// misfit and not the instrument limits a sample; so no sample weighs more than twice the middle one. The mean is 1.
-// Weights that are there already are multiplied. Domain: one finite sigma >= 0 a sample.
-void WeighBySigma(const std::vector<double>& sigma, Measurement* measurement);
+// States the standard deviation of f_r of each sample. What was stated before is another source of noise: the variances
+// add. Domain: one finite sigma >= 0 a sample.
+void AddSigma(const std::vector<double>& sigma, Samples* samples);
 
 // The same for an instrument whose reading, f_r cos(theta_i), has the constant standard deviation `floor`
 // (--noise-floor).
-void WeighByNoiseFloor(double floor, Measurement* measurement);
+void AddNoiseFloor(double floor, Samples* samples);
 
 // Readings near the noise floor of which only the magnitude was kept.
 struct RectifiedNoise {

@@ -83,7 +83,7 @@ Repeats MergeRepeated(Measurement* measurement) {
     sigma.push_back(std::sqrt((prior + moments[g].squares) / (kPooledRepetitions + count - 1) / count));
   }
   samples = samples.Subset(firsts);
-  WeighBySigma(sigma, measurement);
+  AddSigma(sigma, &measurement->samples);
   return repeats;
 }
 

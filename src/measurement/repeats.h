@@ -1,4 +1,4 @@
-// Repeated measurements of the same pair of directions, merged to their mean with their spread as weight.
+// Repeated measurements of the same pair of directions, merged to their mean with their spread as uncertainty.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@ struct Repeats {
   double relative_spread = 0;  // standard deviation of one sample relative to its pair's mean, pooled over the pairs
 };
 
-// Replaces repeated samples (directions equal to 1e-9) by their mean, and sets the weights by WeighBySigma from the
-// standard deviation of each mean. A pair with few repetitions says little about its own spread: the pooled relative
-// spread counts as 4 more repetitions of it, and is all there is for a pair that was measured once. Does nothing where
-// no pair is repeated. A weight that is there already is averaged.
+// Replaces repeated samples (directions equal to 1e-9) by their mean, and states the standard deviation of each mean
+// (Samples::sigma). A pair with few repetitions says little about its own spread: the pooled relative spread counts as
+// 4 more repetitions of it, and is all there is for a pair that was measured once. Does nothing where no pair is
+// repeated. A weight that is there already is averaged.
 Repeats MergeRepeated(Measurement* measurement);
 
 }  // namespace lobefit

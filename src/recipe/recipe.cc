@@ -7,33 +7,11 @@
 
 namespace lobefit {
 
-const std::vector<Choice<Metric>>& MetricChoices() {
-  static const std::vector<Choice<Metric>> choices = {
-      {Metric::kLog, "log", "ln(1 + f cos_theta_i), differences"},
-      {Metric::kCubeRoot, "cube-root", "cube root of f cos_theta_i, differences"},
-      {Metric::kRelative, "relative", "relative differences of f"},
-      {Metric::kCosineL2, "cosine-l2", "differences of f cos_theta_i"},
-      {Metric::kNgan, "ngan", "differences of f cos_theta_i, weighted by sin_theta_i sin_theta_o"},
-      {Metric::kLowLog, "low-log", "ln(1 + f cos_theta_i), differences weighted by sin_theta_i"},
-  };
-  return choices;
-}
-
 const std::vector<Choice<Weighting>>& WeightingChoices() {
   static const std::vector<Choice<Weighting>> choices = {
       {Weighting::kCells, "cells", "every sample counts the same"},
       {Weighting::kSolidAngle, "solid-angle", "a sample counts by the solid angle of its cell"},
       {Weighting::kAuto, "auto", "solid-angle where the format knows its cells, else cells"},
-  };
-  return choices;
-}
-
-const std::vector<Choice<Loss>>& LossChoices() {
-  static const std::vector<Choice<Loss>> choices = {
-      {Loss::kNone, "none", "squares"},
-      {Loss::kHuber, "huber", "linear beyond the scale"},
-      {Loss::kCauchy, "cauchy", "logarithmic beyond the scale"},
-      {Loss::kTukey, "tukey", "constant beyond the scale"},
   };
   return choices;
 }

@@ -9,29 +9,15 @@
 
 #include "lobefit/core/brdf/model.h"
 #include "lobefit/core/sel/sel_table.h"
+#include "lobefit/fit/metric/loss.h"
+#include "lobefit/fit/metric/metric.h"
 
 namespace lobefit {
-
-// What the fit minimises: the sum of squared residuals, with f the model's and m the measured f_r of a sample and
-// channel.
-enum class Metric {
-  kLog,       // ln(1 + f cos_theta_i) - ln(1 + m cos_theta_i)
-  kCubeRoot,  // cbrt(f cos_theta_i) - cbrt(m cos_theta_i)
-  kRelative,  // (f - m) / m; m > 0
-  kCosineL2,  // (f - m) cos_theta_i
-  kNgan,      // (f - m) cos_theta_i, weight sin_theta_i sin_theta_o [Ngan 2005, as in common use]
-  kLowLog,    // ln(1 + f cos_theta_i) - ln(1 + m cos_theta_i), weight sin_theta_i [Low 2012, as in common use]
-};
 
 // kAuto: solid angles where the format knows its cells, else cells.
 enum class Weighting { kCells, kSolidAngle, kAuto };
 
-// Applied to the squared residual of a sample over all its channels; `scale` is in units of the residual.
-enum class Loss { kNone, kHuber, kCauchy, kTukey };
-
-const std::vector<Choice<Metric>>& MetricChoices();
 const std::vector<Choice<Weighting>>& WeightingChoices();
-const std::vector<Choice<Loss>>& LossChoices();
 
 // What a recipe says of one parameter; inside units. Bounds default to the range in the parameter table.
 struct ParameterRecipe {
@@ -61,13 +47,18 @@ struct Recipe {
   std::vector<ParameterRecipe> parameters;  // in the order of Parameters(model)
   // The defaults give the spheres that look most like the tables' (fits/README.md).
   Metric metric = Metric::kCubeRoot;
+  // The user chose the metric: it is kept where the noise of the readings would bias it, and the bias is told. Else the
+  // fit turns to kAsinh there.
+  bool metric_given = false;
+  NoiseModel noise;  // of the readings, for Metric::kAsinh; {0, 0}: the fit estimates it
   Weighting weighting = Weighting::kAuto;
   Loss loss = Loss::kNone;
   double loss_scale = 0.1;
   double theta_max = 80 * 3.14159265358979323846 / 180;  // radians
   // Of the channels, for metals; empty: the measurement's own.
   std::vector<double> wavelengths_nm;
-  // Azimuth of the plane of an in-plane measurement, for ggx-tilted.
+  // Azimuth of the plane of an in-plane measurement, for ggx-tilted; Fit takes that of its measurement where it has
+  // one.
   double plane_azimuth = 0;
 
   bool IsFree(std::size_t index) const;

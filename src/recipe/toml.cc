@@ -112,6 +112,8 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
       place.Fail(bounds->source(), fmt::format("bounds of '{}' must be two numbers, [low, high]", name));
     recipe.low = *array->get(0)->value<double>() * factor;
     recipe.high = *array->get(1)->value<double>() * factor;
+    if (!std::isfinite(*recipe.low) || !std::isfinite(*recipe.high))
+      place.Fail(bounds->source(), fmt::format("bounds of '{}' must be finite numbers", name));
     if (!(*recipe.low < *recipe.high))
       place.Fail(bounds->source(), fmt::format("bounds of '{}': the first must be below the second", name));
     const bool wider = parameter.group == ParameterGroup::kShape && *recipe.high > parameter.high + 1e-12;
@@ -241,6 +243,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
     recipe.name = *name->value<std::string>();
   }
   ReadChoice(root, "metric", MetricChoices(), place, &recipe.metric);
+  recipe.metric_given = root.contains("metric");
   ReadChoice(root, "weighting", WeightingChoices(), place, &recipe.weighting);
   ReadLoss(root, place, &recipe);
   if (const std::optional<double> limit = Number(root, "theta_max_deg", place)) {
@@ -277,9 +280,12 @@ std::string ToToml(const Recipe& recipe) {
         recipe.sel->bound, FormatDouble(recipe.sel->drift));
   }
   std::string text =
-      fmt::format("name = \"{}\"\nmetric = \"{}\"\nweighting = \"{}\"\ntheta_max_deg = {}\ndiffuse = \"{}\"\n",
-                  recipe.name, NameOf(MetricChoices(), recipe.metric), NameOf(WeightingChoices(), recipe.weighting),
-                  FormatDouble(RadiansToDegrees(recipe.theta_max)), NameOf(DiffuseChoices(), recipe.model.diffuse));
+      fmt::format("name = \"{}\"\nweighting = \"{}\"\ntheta_max_deg = {}\ndiffuse = \"{}\"\n", recipe.name,
+                  NameOf(WeightingChoices(), recipe.weighting), FormatDouble(RadiansToDegrees(recipe.theta_max)),
+                  NameOf(DiffuseChoices(), recipe.model.diffuse));
+  // Where it was not given, the fit may choose another.
+  if (recipe.metric_given || recipe.metric != Recipe().metric)
+    text += fmt::format("metric = \"{}\"\n", NameOf(MetricChoices(), recipe.metric));
   if (recipe.loss != Loss::kNone) {
     text += fmt::format("loss = {{ kind = \"{}\", scale = {} }}\n", NameOf(LossChoices(), recipe.loss),
                         FormatDouble(recipe.loss_scale));

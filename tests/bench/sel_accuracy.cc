@@ -64,7 +64,7 @@ LobeErrors Measure(double alpha, double theta_i, SelQuantity quantity) {
   std::vector<double> solid_angle;
   const SelSamples samples = LobeSamples(alpha, theta_i, quantity, &solid_angle);
   SelSliceOptions options;
-  options.metric = Metric::kCosineL2;
+  options.transform = {Curve::kLinear};
   options.quantity = quantity;
   options.max_iterations = 300;
   const SelSlice slice = SearchSelSlice(samples, theta_i, 1, options, samples.size()).slice;

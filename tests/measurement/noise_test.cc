@@ -45,28 +45,30 @@ TEST(FindRectifiedNoise, SignedNoiseAndCleanLobesAreNotRectified) {
   EXPECT_FALSE(FindRectifiedNoise(builder.Finish()).has_value());
 }
 
-TEST(WeighBySigma, IsTheInverseVarianceOfTheLogarithmAboveTheMedian) {
+TEST(AddSigma, IndependentSourcesAddTheirVariances) {
   Measurement m = Scan(0, true);
-  std::vector<double> sigma(m.samples.size(), 0.01);
-  sigma[5] = 1.0;
-  WeighBySigma(sigma, &m);
-  double sum = 0;
-  for (const double weight : m.samples.weight) sum += weight;
-  EXPECT_NEAR(sum, static_cast<double>(m.samples.size()), 1e-9);
-  // The uncertain sample counts next to nothing, and none more than twice the usual one.
-  EXPECT_LT(m.samples.weight[5], 1e-3);
-  for (const double weight : m.samples.weight) EXPECT_LT(weight, 2.1);
+  AddSigma(std::vector<double>(m.samples.size(), 0.03), &m.samples);
+  AddSigma(std::vector<double>(m.samples.size(), 0.04), &m.samples);
+  ASSERT_EQ(m.samples.sigma.size(), m.samples.size());
+  for (const double sigma : m.samples.sigma) EXPECT_NEAR(sigma, 0.05, 1e-15);
+  EXPECT_TRUE(m.samples.weight.empty());
+  m.samples.sigma[3] = 7;
+  EXPECT_EQ(m.samples.Subset({3}).sigma, std::vector<double>({7}));
+  std::vector<std::uint8_t> keep(m.samples.size(), 0);
+  keep[3] = 1;
+  m.samples.Keep(keep);
+  EXPECT_EQ(m.samples.sigma, std::vector<double>({7}));
 }
 
-TEST(WeighByNoiseFloor, GrazingLightHasTheSameReadingNoise) {
+TEST(AddNoiseFloor, IsOfTheReading) {
   MeasurementBuilder builder({{"Y"}, {}});
   for (const double theta_i : {0.1, 1.4}) {
     const double f = 0;
     builder.Add(FromSpherical(theta_i, 0), FromSpherical(0.2, 1), &f, 0);
   }
   Measurement m = builder.Finish();
-  WeighByNoiseFloor(0.01, &m);
-  EXPECT_NEAR(m.samples.weight[0], m.samples.weight[1], 1e-12);
+  AddNoiseFloor(0.01, &m.samples);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(m.samples.sigma[i] * m.samples.wi_z[i], 0.01, 1e-15);
 }
 
 }  // namespace

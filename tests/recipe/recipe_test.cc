@@ -112,8 +112,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "r.toml:3: metal = 'Unobtainium' is unknown; allowed: Ag, silver, Al, aluminium, Au, gold, Cr, "
                 "chromium, Cu, "
                 "copper, Fe, iron, Ni, nickel, Ti, titanium, W, tungsten, brass, Cu70Zn30"},
-        BadCase{"metric = 3\n[[lobe]]\n",
-                "r.toml:1: metric = '?' is unknown; allowed: log, cube-root, relative, cosine-l2, ngan, low-log"},
+        BadCase{
+            "metric = 3\n[[lobe]]\n",
+            "r.toml:1: metric = '?' is unknown; allowed: log, cube-root, relative, cosine-l2, ngan, low-log, asinh"},
         BadCase{"[[lobe]]\n[parameters]\nalpha = { start = 1 }\n",
                 "r.toml:3: unknown key 'alpha' of this model's parameters (did you mean 'alpha_x'?); allowed: alpha_x, "
                 "alpha_y, "

@@ -4,8 +4,9 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "lobefit/base/choice.h"
 
 namespace lobefit {
 
@@ -105,39 +106,9 @@ double InsideFactor(const Parameter& parameter);
 // inside units.
 using ParameterValues = std::vector<std::vector<double>>;
 
-// Words for the choices, as recipes, documents and help spell them.
-template <class Enum>
-struct Choice {
-  Enum value;
-  const char* name;
-  const char* description;
-};
 const std::vector<Choice<Ndf>>& NdfChoices();
 const std::vector<Choice<Masking>>& MaskingChoices();
 const std::vector<Choice<Fresnel>>& FresnelChoices();
 const std::vector<Choice<Diffuse>>& DiffuseChoices();
-
-template <class Enum>
-const char* NameOf(const std::vector<Choice<Enum>>& choices, Enum value) {
-  for (const Choice<Enum>& choice : choices) {
-    if (choice.value == value) return choice.name;
-  }
-  return "?";
-}
-
-template <class Enum>
-const Choice<Enum>* Find(const std::vector<Choice<Enum>>& choices, std::string_view name) {
-  for (const Choice<Enum>& choice : choices) {
-    if (name == choice.name) return &choice;
-  }
-  return nullptr;
-}
-
-template <class Enum>
-std::vector<std::string> Names(const std::vector<Choice<Enum>>& choices) {
-  std::vector<std::string> names;
-  for (const Choice<Enum>& choice : choices) names.emplace_back(choice.name);
-  return names;
-}
 
 }  // namespace lobefit

@@ -37,20 +37,6 @@ LossValue EvaluateLoss(Loss loss, double scale, double s) {
   return {s, 1, 0};
 }
 
-double TuningConstant(Loss loss) {
-  switch (loss) {
-    case Loss::kHuber:
-      return 1.345;
-    case Loss::kCauchy:
-      return 2.385;
-    case Loss::kTukey:
-      return 4.685;
-    case Loss::kNone:
-      break;
-  }
-  return 0;
-}
-
 double RobustDeviation(std::vector<double>* residuals) {
   if (residuals->empty()) return 0;
   for (double& r : *residuals) r = std::fabs(r);

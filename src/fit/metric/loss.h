@@ -23,10 +23,6 @@ struct LossValue {
 // Domain: s >= 0, scale > 0. kHuber's second derivative jumps at a^2, where it is that below.
 LossValue EvaluateLoss(Loss loss, double scale, double s);
 
-// The scale in units of a robust standard deviation for which the loss is 95 % efficient on normal residuals of one
-// channel [Huber 1.345, Holland and Welsch 1977: Cauchy 2.385, Tukey 4.685]; kNone: 0.
-double TuningConstant(Loss loss);
-
 // 1.4826 times the median of |r|: the standard deviation of normal residuals about 0, moved little by outliers.
 // Reorders the values; 0 where there are none.
 double RobustDeviation(std::vector<double>* residuals);

@@ -5,7 +5,7 @@
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lobefit/fit/metric/transform.cc"
+#define HWY_TARGET_INCLUDE "transform.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // After highway.h:
@@ -274,11 +274,6 @@ HWY_EXPORT(ResidualArrays);
 HWY_EXPORT(ValueArrays);
 HWY_EXPORT(InverseSlopeArrays);
 HWY_EXPORT(CurvatureArrays);
-
-bool Takes(const Transform& transform, double f_r, double cos_theta_i) {
-  if (transform.curve == Curve::kLogOnePlus) return f_r * cos_theta_i > -1;
-  return transform.curve != Curve::kRelative || f_r > 0;
-}
 
 void Residuals(const Transform& transform, const double* f, const double* cos_i, const double* measured,
                const double* sqrt_weight, std::size_t count, double* residual, double* slope) {

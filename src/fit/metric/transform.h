@@ -27,7 +27,10 @@ struct Transform {
 };
 
 // Whether the curve has a number for a measured f_r.
-bool Takes(const Transform& transform, double f_r, double cos_theta_i);
+inline bool Takes(const Transform& transform, double f_r, double cos_theta_i) {
+  if (transform.curve == Curve::kLogOnePlus) return f_r * cos_theta_i > -1;
+  return transform.curve != Curve::kRelative || f_r > 0;
+}
 
 // All arrays have `count` entries.
 

@@ -112,7 +112,7 @@ SlopeCoordinates Layout::SlopeAt(const Shape& shape, const double* u) const {
 
 KernelModel Layout::ToKernel(const double* u) const {
   KernelModel kernel;
-  kernel.transform = TransformOf(recipe_.metric);
+  kernel.transform = TransformOf(recipe_.metric, recipe_.noise);
   kernel.loss = recipe_.loss;
   kernel.loss_scale = recipe_.loss_scale;
   kernel.diffuse_kind = recipe_.model.diffuse;

@@ -17,30 +17,6 @@ namespace {
 // 256 samples: the columns of one channel of a one-lobe model take 16 KB, half of a first-level cache.
 constexpr std::size_t kBlock = 256;
 
-double Rho(Loss loss, double scale, double s, double* weight) {
-  const double a2 = scale * scale;
-  switch (loss) {
-    case Loss::kHuber: {
-      if (s <= a2) break;
-      const double r = std::sqrt(s);
-      *weight = scale / r;
-      return 2 * scale * r - a2;
-    }
-    case Loss::kCauchy:
-      *weight = 1 / (1 + s / a2);
-      return a2 * std::log1p(s / a2);
-    case Loss::kTukey: {
-      const double t = s < a2 ? 1 - s / a2 : 0;
-      *weight = t * t;
-      return a2 / 3 * (1 - t * t * t);
-    }
-    case Loss::kNone:
-      break;
-  }
-  *weight = 1;
-  return s;
-}
-
 // One block of samples: the model's values, residuals and columns. Arrays of kBlock, padded so that pads add nothing to
 // any sum.
 class Block {
@@ -121,8 +97,8 @@ class Block {
     const double* sqrt_weight = SqrtWeight(begin);
     for (std::size_t c = 0; c < model_.channels; ++c) {
       const double* measured = Padded(samples_.measured[c] + begin, 1.0, &measured_pad_);
-      arrays::Residuals(model_.transform, f_.data() + c * kBlock, cos_i_, measured, sqrt_weight, padded_,
-                        residual_.data() + c * kBlock, gradient_ ? slope_.data() + c * kBlock : nullptr);
+      lobefit::Residuals(model_.transform, f_.data() + c * kBlock, cos_i_, measured, sqrt_weight, padded_,
+                         residual_.data() + c * kBlock, gradient_ ? slope_.data() + c * kBlock : nullptr);
     }
     double sum = 0;
     if (model_.loss == Loss::kNone) {
@@ -132,11 +108,12 @@ class Block {
       return sum;
     }
     for (std::size_t i = 0; i < count_; ++i) {
-      double s = 0, weight = 1;
+      double s = 0;
       for (std::size_t c = 0; c < model_.channels; ++c) s += residual_[c * kBlock + i] * residual_[c * kBlock + i];
-      sum += Rho(model_.loss, model_.loss_scale, s, &weight);
-      *sum_robust_weight += weight;
-      const double root = std::sqrt(weight);
+      const LossValue loss = EvaluateLoss(model_.loss, model_.loss_scale, s);
+      sum += loss.rho;
+      *sum_robust_weight += loss.first;
+      const double root = std::sqrt(loss.first);
       for (std::size_t c = 0; c < model_.channels; ++c) {
         residual_[c * kBlock + i] *= root;
         if (gradient_) slope_[c * kBlock + i] *= root;
@@ -279,22 +256,6 @@ class Block {
 
 }  // namespace
 
-Transform TransformOf(Metric metric) {
-  switch (metric) {
-    case Metric::kCubeRoot:
-      return Transform::kCubeRoot;
-    case Metric::kRelative:
-      return Transform::kRelative;
-    case Metric::kCosineL2:
-    case Metric::kNgan:
-      return Transform::kLinear;
-    case Metric::kLog:
-    case Metric::kLowLog:
-      break;
-  }
-  return Transform::kLog1p;
-}
-
 std::size_t KernelModel::shape_columns() const {
   std::size_t sum = 0;
   for (const KernelLobe& lobe : lobes) sum += lobe.columns;
@@ -305,15 +266,6 @@ std::size_t KernelModel::columns() const {
   std::size_t sum = shape_columns() + (diffuse.empty() ? 0 : 1) + 1;
   for (const KernelLobe& lobe : lobes) sum += FresnelParameters(lobe.kind.fresnel);
   return sum;
-}
-
-void TransformMeasured(Transform transform, const double* f_r, const double* cos_theta_i, std::size_t count,
-                       double* target) {
-  if (transform == Transform::kRelative) {
-    std::copy_n(f_r, count, target);
-    return;
-  }
-  arrays::Transformed(transform, f_r, cos_theta_i, count, target);
 }
 
 void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gradient, std::size_t begin,

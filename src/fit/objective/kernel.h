@@ -7,14 +7,10 @@
 
 #include "lobefit/core/brdf/lobe.h"
 #include "lobefit/core/brdf/model.h"
-#include "lobefit/recipe/recipe.h"
+#include "lobefit/fit/metric/loss.h"
+#include "lobefit/fit/metric/transform.h"
 
 namespace lobefit {
-
-// How a value v = f cos_theta_i or f becomes a residual against the measured one.
-enum class Transform { kLog1p, kCubeRoot, kLinear, kRelative };
-
-Transform TransformOf(Metric metric);
 
 // Samples as the loop reads them, in place: what follows from them (transformed values, weights) is computed anew in
 // every pass, so that a fit needs no memory that grows with their number.
@@ -28,10 +24,6 @@ struct KernelSamples {
   double weight_scale = 1;
   std::size_t count = 0;
 };
-
-// target = T(f_r), kRelative: f_r itself; by the same instructions as the loop.
-void TransformMeasured(Transform transform, const double* f_r, const double* cos_theta_i, std::size_t count,
-                       double* target);
 
 struct KernelLobe {
   Lobe kind;
@@ -47,7 +39,7 @@ struct KernelModel {
   std::vector<double> diffuse;  // albedo a channel; empty: no diffuse part
   Diffuse diffuse_kind = Diffuse::kLambert;
   std::size_t channels = 1;
-  Transform transform = Transform::kLog1p;
+  Transform transform;
   Loss loss = Loss::kNone;
   double loss_scale = 1;
 
@@ -65,7 +57,7 @@ struct KernelSums {
 };
 
 // Adds the samples [begin, end) to `sums`; without `gradient` only sum_rho. The order of additions depends on begin and
-// end only.
+// end only; the width of the vectors, and so the last bit of the sums, on the processor.
 void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gradient, std::size_t begin,
                 std::size_t end, KernelSums* sums);
 

@@ -7,103 +7,17 @@
 #define HWY_TARGET_INCLUDE "kernel_arrays.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// After highway.h:
-#include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace lobefit {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D64 = hn::ScalableTag<double>;
+using D64 = hn::CappedTag<double, 8>;  // arrays are padded to 8
 using V64 = hn::Vec<D64>;
 
 HWY_INLINE V64 Load(const double* p) { return hn::LoadU(D64(), p); }
 HWY_INLINE V64 Constant(double x) { return hn::Set(D64(), x); }
-
-// Cube root, odd, 0 at 0: a third of the exponent (through the upper half of the bits as a number) is within 6 %, two
-// steps of Halley's method and one of Newton's leave rounding. A quarter of the time of exp(log(x) / 3).
-HWY_INLINE V64 CubeRoot(V64 x) {
-  const D64 d;
-  const hn::RebindToUnsigned<D64> bits;
-  const V64 magnitude = hn::Max(hn::Abs(x), Constant(1e-300));
-  // 2^52 + n holds the integer n in its lowest bits.
-  const V64 shift = Constant(4503599627370496.0);
-  const V64 upper = hn::Sub(
-      hn::BitCast(d, hn::Or(hn::ShiftRight<32>(hn::BitCast(bits, magnitude)), hn::BitCast(bits, shift))), shift);
-  // 715094163 = (2 / 3 of the exponent's bias, less 0.045) in units of the upper half.
-  const V64 third = hn::Add(hn::MulAdd(upper, Constant(1.0 / 3), Constant(715094163.0)), shift);
-  V64 y = hn::BitCast(d, hn::ShiftLeft<32>(hn::BitCast(bits, third)));
-  for (int step = 0; step < 2; ++step) {
-    const V64 cube = hn::Mul(hn::Mul(y, y), y), twice = hn::Add(cube, cube);
-    y = hn::Div(hn::Mul(y, hn::Add(cube, hn::Add(magnitude, magnitude))), hn::Add(twice, magnitude));
-  }
-  const V64 y2 = hn::Mul(y, y);
-  y = hn::Sub(y, hn::Div(hn::Sub(hn::Mul(y2, y), magnitude), hn::Mul(Constant(3), y2)));
-  return hn::IfThenElse(hn::Eq(x, hn::Zero(d)), hn::Zero(d), hn::CopySign(y, x));
-}
-
-// ln(1 + v) as ln(u) + what rounding took from u = 1 + v.
-HWY_INLINE V64 LogOnePlus(V64 v) {
-  const V64 one = Constant(1), u = hn::Add(one, v);
-  return hn::Add(hn::Log(D64(), u), hn::Div(hn::Sub(v, hn::Sub(u, one)), u));
-}
-
-// T(f); kRelative: f itself.
-HWY_INLINE V64 ApplyTransform(Transform transform, V64 f, V64 cos_i) {
-  const V64 v = hn::Mul(f, cos_i);
-  switch (transform) {
-    case Transform::kLog1p:
-      return LogOnePlus(v);
-    case Transform::kCubeRoot:
-      return CubeRoot(v);
-    case Transform::kRelative:
-      return f;
-    case Transform::kLinear:
-      break;
-  }
-  return v;
-}
-
-// T(f) - T(m) and dT/df; `m` measured. Relative: f / m - 1.
-HWY_INLINE V64 Difference(Transform transform, V64 f, V64 m, V64 c, V64* slope) {
-  const V64 one = Constant(1);
-  switch (transform) {
-    case Transform::kLog1p:
-      // One logarithm for two: ln(1 + f c) - ln(1 + m c) = ln(1 + (f - m) c / (1 + m c)).
-      *slope = hn::Div(c, hn::MulAdd(f, c, one));
-      return LogOnePlus(hn::Div(hn::Mul(hn::Sub(f, m), c), hn::MulAdd(m, c, one)));
-    case Transform::kCubeRoot: {
-      const V64 root = CubeRoot(hn::Mul(f, c)), target = CubeRoot(hn::Mul(m, c));
-      // Where the model vanishes the slope is infinite: it is that at a millionth of the measured value at most.
-      const V64 least = hn::MulAdd(hn::Abs(target), Constant(0.01), Constant(1e-15));
-      *slope = hn::Div(c, hn::Mul(Constant(3), hn::Max(hn::Mul(root, root), hn::Mul(least, least))));
-      return hn::Sub(root, target);
-    }
-    case Transform::kRelative:
-      *slope = hn::Div(one, m);
-      return hn::Mul(hn::Sub(f, m), *slope);
-    case Transform::kLinear:
-      break;
-  }
-  *slope = c;
-  return hn::Mul(hn::Sub(f, m), c);
-}
-
-void TransformArrays(int transform, const double* f_r, const double* cos_i, std::size_t count, double* target) {
-  const std::size_t lanes = hn::Lanes(D64());
-  std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) {
-    hn::StoreU(ApplyTransform(static_cast<Transform>(transform), Load(f_r + i), Load(cos_i + i)), D64(), target + i);
-  }
-  if (i == count) return;
-  constexpr std::size_t kMaxLanes = hn::MaxLanes(D64());
-  double pad_f[kMaxLanes] = {}, pad_c[kMaxLanes] = {}, out[kMaxLanes];
-  std::copy(f_r + i, f_r + count, pad_f);
-  std::copy(cos_i + i, cos_i + count, pad_c);
-  hn::StoreU(ApplyTransform(static_cast<Transform>(transform), Load(pad_f), Load(pad_c)), D64(), out);
-  std::copy(out, out + (count - i), target + i);
-}
 
 // p5 = (1 - cos_d)^5 and 1 - p5: Schlick's factor is f0 + (1 - f0) p5, its derivative by f0 1 - p5 (n a multiple of the
 // lanes).
@@ -142,19 +56,6 @@ void AddFactorArrays(const double* a, double constant, double slope, const doubl
 void AddScaledArrays(const double* a, double factor, std::size_t n, double* to) {
   for (std::size_t i = 0; i < n; i += hn::Lanes(D64()))
     hn::StoreU(hn::MulAdd(Constant(factor), Load(a + i), Load(to + i)), D64(), to + i);
-}
-
-// residual = sqrt_weight (T(f) - T(measured)), slope = sqrt_weight dT/df (null: not wanted); sqrt_weight null: 1.
-void ResidualArrays(int transform, const double* f, const double* cos_i, const double* measured,
-                    const double* sqrt_weight, std::size_t n, double* residual, double* slope) {
-  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
-    V64 g;
-    const V64 difference =
-        Difference(static_cast<Transform>(transform), Load(f + i), Load(measured + i), Load(cos_i + i), &g);
-    const V64 w = sqrt_weight != nullptr ? Load(sqrt_weight + i) : Constant(1);
-    hn::StoreU(hn::Mul(w, difference), D64(), residual + i);
-    if (slope != nullptr) hn::StoreU(hn::Mul(w, g), D64(), slope + i);
-  }
 }
 
 // to = sqrt(scale * to).
@@ -242,12 +143,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace lobefit {
-HWY_EXPORT(TransformArrays);
 HWY_EXPORT(SchlickArrays);
 HWY_EXPORT(ContractArrays);
 HWY_EXPORT(AddFactorArrays);
 HWY_EXPORT(AddScaledArrays);
-HWY_EXPORT(ResidualArrays);
 HWY_EXPORT(FinishWeightArrays);
 HWY_EXPORT(TimesSineArrays);
 HWY_EXPORT(ShapeColumnArrays);
@@ -258,9 +157,6 @@ HWY_EXPORT(GramArrays);
 
 namespace arrays {
 
-void Transformed(Transform transform, const double* f_r, const double* cos_i, std::size_t count, double* target) {
-  HWY_DYNAMIC_DISPATCH(TransformArrays)(static_cast<int>(transform), f_r, cos_i, count, target);
-}
 void Schlick(const double* cos_d, std::size_t n, double* p5, double* one_minus_p5) {
   HWY_DYNAMIC_DISPATCH(SchlickArrays)(cos_d, n, p5, one_minus_p5);
 }
@@ -273,11 +169,6 @@ void AddFactor(const double* a, double constant, double slope, const double* arr
 }
 void AddScaled(const double* a, double factor, std::size_t n, double* to) {
   HWY_DYNAMIC_DISPATCH(AddScaledArrays)(a, factor, n, to);
-}
-void Residuals(Transform transform, const double* f, const double* cos_i, const double* measured,
-               const double* sqrt_weight, std::size_t n, double* residual, double* slope) {
-  HWY_DYNAMIC_DISPATCH(ResidualArrays)
-  (static_cast<int>(transform), f, cos_i, measured, sqrt_weight, n, residual, slope);
 }
 void FinishWeight(double scale, std::size_t n, double* to) { HWY_DYNAMIC_DISPATCH(FinishWeightArrays)(scale, n, to); }
 void TimesSine(const double* cosine, std::size_t n, double* to) {

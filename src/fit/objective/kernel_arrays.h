@@ -4,12 +4,7 @@
 
 #include <cstddef>
 
-#include "lobefit/fit/objective/kernel.h"
-
 namespace lobefit::arrays {
-
-// target = T(f_r), kRelative: f_r itself; any count.
-void Transformed(Transform transform, const double* f_r, const double* cos_i, std::size_t count, double* target);
 
 // p5 = (1 - cos_d)^5 and 1 - p5: Schlick's factor is f0 + (1 - f0) p5, its derivative by f0 1 - p5 (n a multiple of the
 // lanes).
@@ -24,10 +19,6 @@ void AddFactor(const double* a, double constant, double slope, const double* arr
 
 // to += factor * a.
 void AddScaled(const double* a, double factor, std::size_t n, double* to);
-
-// residual = sqrt_weight (T(f) - T(measured)), slope = sqrt_weight dT/df (null: not wanted); sqrt_weight null: 1.
-void Residuals(Transform transform, const double* f, const double* cos_i, const double* measured,
-               const double* sqrt_weight, std::size_t n, double* residual, double* slope);
 
 // to = sqrt(scale * to).
 void FinishWeight(double scale, std::size_t n, double* to);

@@ -5,13 +5,11 @@
 
 #include "lobefit/core/brdf/brdf.h"
 #include "lobefit/core/sel/sel_table.h"
-#include "lobefit/fit/objective/kernel.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/objective/sigma_weights.h"
 
 namespace lobefit {
 namespace {
-
-double Sine(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
 
 // Runs of samples with one incident direction share their lobes.
 void PredictLobes(const SelReflectance& lobes, const Samples& samples, ThreadPool* pool,
@@ -34,38 +32,60 @@ void PredictLobes(const SelReflectance& lobes, const Samples& samples, ThreadPoo
   });
 }
 
-// Adds the squared residuals of samples [begin, begin + model.size()) in one channel under every metric; each transform
-// is applied once. weights[metric][sample - begin].
-void AddSquares(const std::vector<std::vector<double>>& weights, const Samples& samples, std::size_t channel,
-                std::size_t begin, const std::vector<double>& f_r, std::vector<SquareSum>* sums) {
-  const std::size_t count = f_r.size();
-  std::vector<double> model(count), target(count), residual(count);
+// Weighted squares of residuals. What the metric has no number for does not count.
+SquareSum SumOf(const std::vector<double>& residual, const double* weight) {
+  SquareSum sum;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    const bool counts = std::isfinite(residual[i]);
+    const double w = counts ? weight[i] : 0.0, r = counts ? residual[i] : 0.0;
+    sum.square += w * r * r;
+    sum.weight += w;
+    sum.residuals += counts ? 1 : 0;
+  }
+  return sum;
+}
+
+void Add(const SquareSum& more, SquareSum* sum) {
+  sum->square += more.square;
+  sum->weight += more.weight;
+  sum->residuals += more.residuals;
+}
+
+// Residuals of a channel, NaN where the curve has no number for the measured value.
+void ResidualsOf(const Transform& transform, const Samples& samples, std::size_t channel, std::size_t begin,
+                 const std::vector<double>& f_r, std::vector<double>* residual) {
   const double* measured = samples.values[channel].data() + begin;
   const double* cos_i = samples.wi_z.data() + begin;
-  for (const Transform transform :
-       {Transform::kLog1p, Transform::kCubeRoot, Transform::kLinear, Transform::kRelative}) {
-    TransformMeasured(transform, f_r.data(), cos_i, count, model.data());
-    TransformMeasured(transform, measured, cos_i, count, target.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      residual[i] = model[i] - target[i];
-      if (transform == Transform::kRelative) residual[i] = target[i] > 0 ? residual[i] / target[i] : std::nan("");
-    }
-    for (std::size_t m = 0; m < MetricChoices().size(); ++m) {
-      const Metric metric = MetricChoices()[m].value;
-      if (TransformOf(metric) != transform) continue;
-      const double* weight = weights[m].data();
-      SquareSum sum;
-      for (std::size_t i = 0; i < count; ++i) {
-        // What the metric has no number for: weight 0.
-        const bool counts = std::isfinite(residual[i]);
-        const double w = counts ? weight[i] : 0.0, r = counts ? residual[i] : 0.0;
-        sum.square += w * r * r;
-        sum.weight += w;
-        sum.residuals += counts ? 1 : 0;
-      }
-      (*sums)[m].square += sum.square;
-      (*sums)[m].weight += sum.weight;
-      (*sums)[m].residuals += sum.residuals;
+  residual->resize(f_r.size());
+  Residuals(transform, f_r.data(), cos_i, measured, nullptr, f_r.size(), residual->data(), nullptr);
+  for (std::size_t i = 0; i < f_r.size(); ++i) {
+    if (!Takes(transform, measured[i], cos_i[i])) (*residual)[i] = std::nan("");
+  }
+}
+
+// Metrics that can be evaluated, in the order of the table.
+std::vector<Metric> KnownMetrics(const NoiseModel& noise) {
+  std::vector<Metric> metrics;
+  for (const MetricRow& row : MetricTable()) {
+    const bool known = row.curve != Curve::kAsinh || (noise.floor > 0 && noise.relative > 0);
+    if (known) metrics.push_back(row.metric);
+  }
+  return metrics;
+}
+
+// Adds the squared residuals of samples [begin, begin + f_r.size()) in one channel under every metric; each curve is
+// evaluated once. weights[metric][sample - begin].
+void AddSquares(const std::vector<Metric>& metrics, const NoiseModel& noise,
+                const std::vector<std::vector<double>>& weights, const Samples& samples, std::size_t channel,
+                std::size_t begin, const std::vector<double>& f_r, std::vector<SquareSum>* sums) {
+  std::vector<double> residual;
+  for (std::size_t first = 0; first < metrics.size(); ++first) {
+    const Curve curve = RowOf(metrics[first]).curve;
+    const auto same = [&](Metric metric) { return RowOf(metric).curve == curve; };
+    if (std::any_of(metrics.begin(), metrics.begin() + static_cast<std::ptrdiff_t>(first), same)) continue;
+    ResidualsOf(TransformOf(metrics[first], noise), samples, channel, begin, f_r, &residual);
+    for (std::size_t m = first; m < metrics.size(); ++m) {
+      if (same(metrics[m])) Add(SumOf(residual, weights[m].data()), &(*sums)[m]);
     }
   }
 }
@@ -75,8 +95,7 @@ void AddSquares(const std::vector<std::vector<double>>& weights, const Samples& 
 double SampleWeight(Metric metric, Weighting weighting, bool own_weights, const Samples& samples, std::size_t i) {
   double weight = own_weights && !samples.weight.empty() ? samples.weight[i] : 1.0;
   if (weighting == Weighting::kSolidAngle) weight *= samples.solid_angle[i];
-  if (metric == Metric::kNgan || metric == Metric::kLowLog) weight *= Sine(samples.wi_z[i]);
-  if (metric == Metric::kNgan) weight *= Sine(samples.wo_z[i]);
+  weight *= AngularWeight(metric, samples.wi_z[i], samples.wo_z[i]);
   return weight;
 }
 
@@ -105,60 +124,53 @@ std::vector<std::vector<double>> Predict(const Material& material, const Samples
   return f_r;
 }
 
-SquareSum SumSquares(Metric metric, Weighting weighting, bool own_weights, const Samples& samples,
-                     const std::vector<std::vector<double>>& f_r) {
-  const Transform transform = TransformOf(metric);
-  const std::size_t count = samples.size();
-  std::vector<double> model(count), target(count);
+SquareSum SumSquares(Metric metric, const NoiseModel& noise, Weighting weighting, bool own_weights,
+                     const Samples& samples, const std::vector<std::vector<double>>& f_r) {
+  std::vector<double> weight(samples.size()), residual;
+  for (std::size_t i = 0; i < samples.size(); ++i) weight[i] = SampleWeight(metric, weighting, own_weights, samples, i);
+  if (const SigmaWeights sigma(samples, metric, noise); own_weights && !sigma.empty()) {
+    const std::vector<double> stated = sigma.AtReadings();
+    for (std::size_t i = 0; i < samples.size(); ++i) weight[i] *= stated[i];
+  }
   SquareSum sum;
   for (std::size_t c = 0; c < f_r.size(); ++c) {
-    TransformMeasured(transform, f_r[c].data(), samples.wi_z.data(), count, model.data());
-    TransformMeasured(transform, samples.values[c].data(), samples.wi_z.data(), count, target.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      double residual = model[i] - target[i];
-      if (transform == Transform::kRelative) residual = target[i] > 0 ? residual / target[i] : std::nan("");
-      if (!std::isfinite(residual)) continue;
-      const double weight = SampleWeight(metric, weighting, own_weights, samples, i);
-      sum.square += weight * residual * residual;
-      sum.weight += weight;
-      ++sum.residuals;
-    }
+    ResidualsOf(TransformOf(metric, noise), samples, c, 0, f_r[c], &residual);
+    Add(SumOf(residual, weight.data()), &sum);
   }
   return sum;
 }
 
-std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples, const PredictPiece& predict,
-                                               ThreadPool* pool) {
-  const std::size_t metrics = MetricChoices().size(), runs = RunCount(samples.size());
-  std::vector<std::vector<SquareSum>> sums(runs, std::vector<SquareSum>(metrics));
+std::vector<MetricError> ErrorsUnderAllMetrics(const NoiseModel& noise, Weighting weighting, const Samples& samples,
+                                               const PredictPiece& predict, ThreadPool* pool) {
+  const std::vector<Metric> metrics = KnownMetrics(noise);
+  const std::size_t runs = RunCount(samples.size());
+  std::vector<std::vector<SquareSum>> sums(runs, std::vector<SquareSum>(metrics.size()));
   pool->Run(runs, [&](std::size_t run) {
-    std::vector<std::vector<double>> f_r, weights(metrics);
+    std::vector<std::vector<double>> f_r, weights(metrics.size());
     constexpr std::size_t kPiece = 1024;
     const std::size_t last = RunBegin(samples.size(), run + 1);
     for (std::size_t begin = RunBegin(samples.size(), run); begin < last; begin += kPiece) {
       const std::size_t end = std::min(last, begin + kPiece);
       predict(begin, end, &f_r);
-      for (std::size_t m = 0; m < metrics; ++m) {
+      for (std::size_t m = 0; m < metrics.size(); ++m) {
         weights[m].resize(end - begin);
         for (std::size_t i = begin; i < end; ++i)
-          weights[m][i - begin] = SampleWeight(MetricChoices()[m].value, weighting, false, samples, i);
+          weights[m][i - begin] = SampleWeight(metrics[m], weighting, false, samples, i);
       }
-      for (std::size_t c = 0; c < f_r.size(); ++c) AddSquares(weights, samples, c, begin, f_r[c], &sums[run]);
+      for (std::size_t c = 0; c < f_r.size(); ++c)
+        AddSquares(metrics, noise, weights, samples, c, begin, f_r[c], &sums[run]);
     }
   });
   std::vector<MetricError> errors;
-  for (std::size_t m = 0; m < metrics; ++m) {
+  for (std::size_t m = 0; m < metrics.size(); ++m) {
     SquareSum total;
-    for (std::size_t run = 0; run < runs; ++run) {
-      total.square += sums[run][m].square;
-      total.weight += sums[run][m].weight;
-    }
-    errors.push_back({MetricChoices()[m].name, std::sqrt(total.MeanSquare())});
+    for (std::size_t run = 0; run < runs; ++run) Add(sums[run][m], &total);
+    errors.push_back({RowOf(metrics[m]).name, std::sqrt(total.MeanSquare())});
   }
   return errors;
 }
 
-std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples,
+std::vector<MetricError> ErrorsUnderAllMetrics(const NoiseModel& noise, Weighting weighting, const Samples& samples,
                                                const std::vector<std::vector<double>>& f_r, ThreadPool* pool) {
   const PredictPiece slice = [&](std::size_t begin, std::size_t end, std::vector<std::vector<double>>* piece) {
     piece->clear();
@@ -166,7 +178,7 @@ std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Sample
       piece->emplace_back(channel.begin() + static_cast<std::ptrdiff_t>(begin),
                           channel.begin() + static_cast<std::ptrdiff_t>(end));
   };
-  return ErrorsUnderAllMetrics(weighting, samples, slice, pool);
+  return ErrorsUnderAllMetrics(noise, weighting, samples, slice, pool);
 }
 
 }  // namespace lobefit

@@ -29,19 +29,21 @@ struct SquareSum {
 // the metric (sines of ngan and low-log).
 double SampleWeight(Metric metric, Weighting weighting, bool own_weights, const Samples& samples, std::size_t i);
 
-// Squared residuals of a prediction under a metric, so weighted.
-SquareSum SumSquares(Metric metric, Weighting weighting, bool own_weights, const Samples& samples,
-                     const std::vector<std::vector<double>>& f_r);
+// Squared residuals of a prediction under a metric, so weighted; own weights with those of stated uncertainties, at the
+// readings.
+SquareSum SumSquares(Metric metric, const NoiseModel& noise, Weighting weighting, bool own_weights,
+                     const Samples& samples, const std::vector<std::vector<double>>& f_r);
 
 // f_r[channel][sample - begin] of a model at the samples [begin, end); safe from several threads.
 using PredictPiece = std::function<void(std::size_t begin, std::size_t end, std::vector<std::vector<double>>* f_r)>;
 
 // Root mean square under every metric, as in Material::errors (without the samples' own weights), piece by piece: no
-// memory beside the samples, and no dependence on the number of threads.
-std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples, const PredictPiece& predict,
-                                               ThreadPool* pool);
+// memory beside the samples, and no dependence on the number of threads. Metrics that need the noise are left out where
+// none is known.
+std::vector<MetricError> ErrorsUnderAllMetrics(const NoiseModel& noise, Weighting weighting, const Samples& samples,
+                                               const PredictPiece& predict, ThreadPool* pool);
 // The same for a prediction that is there already.
-std::vector<MetricError> ErrorsUnderAllMetrics(Weighting weighting, const Samples& samples,
+std::vector<MetricError> ErrorsUnderAllMetrics(const NoiseModel& noise, Weighting weighting, const Samples& samples,
                                                const std::vector<std::vector<double>>& f_r, ThreadPool* pool);
 
 }  // namespace lobefit

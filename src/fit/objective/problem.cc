@@ -12,8 +12,6 @@ namespace {
 constexpr std::size_t kMaxRuns = 64;
 constexpr std::size_t kMinRun = 1024;
 
-double Sine(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
-
 }  // namespace
 
 std::size_t RunCount(std::size_t count) { return std::clamp<std::size_t>(count / kMinRun, 1, kMaxRuns); }
@@ -34,16 +32,12 @@ void SetAsideForRecipe(const Recipe& recipe, Measurement* measurement) {
       ++beyond;
     }
   }
-  const Transform transform = TransformOf(recipe.metric);
-  if (transform == Transform::kLog1p || transform == Transform::kRelative) {
-    for (const std::vector<double>& values : samples.values) {
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        const bool bad = transform == Transform::kLog1p ? values[i] * samples.wi_z[i] <= -1 : values[i] <= 0;
-        if (bad && keep[i] != 0) {
-          keep[i] = 0;
-          ++negative;
-        }
-      }
+  const Transform transform = TransformOf(recipe.metric, recipe.noise);
+  for (const std::vector<double>& values : samples.values) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (keep[i] == 0 || Takes(transform, values[i], samples.wi_z[i])) continue;
+      keep[i] = 0;
+      ++negative;
     }
   }
   if (beyond + negative == 0) return;
@@ -70,7 +64,8 @@ void SetDirections(const Samples& samples, KernelSamples* kernel) {
   kernel->count = samples.size();
 }
 
-Problem::Problem(const Samples& samples, const Recipe& recipe) {
+Problem::Problem(const Samples& samples, const Recipe& recipe)
+    : samples_(samples), metric_(recipe.metric), sigma_(samples, recipe.metric, recipe.noise) {
   SetDirections(samples, &kernel_);
   for (const std::vector<double>& values : samples.values) kernel_.measured.push_back(values.data());
   const bool by_solid_angle = EffectiveWeighting(recipe.weighting, samples) == Weighting::kSolidAngle;
@@ -79,22 +74,45 @@ Problem::Problem(const Samples& samples, const Recipe& recipe) {
         "weighting 'solid-angle': this format lists directions without cells, so their solid angles are not known; use "
         "--weighting cells");
   }
-  kernel_.sin_i = recipe.metric == Metric::kNgan || recipe.metric == Metric::kLowLog;
-  kernel_.sin_o = recipe.metric == Metric::kNgan;
+  kernel_.sin_i = RowOf(recipe.metric).sin_i;
+  kernel_.sin_o = RowOf(recipe.metric).sin_o;
   if (!samples.weight.empty()) kernel_.weight = samples.weight.data();
   if (by_solid_angle) kernel_.solid_angle = samples.solid_angle.data();
-  if (kernel_.weight == nullptr && !by_solid_angle && !kernel_.sin_i) return;
-  // Weights of mean 1.
-  double sum = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    double weight = samples.weight.empty() ? 1.0 : samples.weight[i];
-    if (by_solid_angle) weight *= samples.solid_angle[i];
-    if (kernel_.sin_i) weight *= Sine(samples.wi_z[i]);
-    if (kernel_.sin_o) weight *= Sine(samples.wo_z[i]);
-    sum += weight;
+  if (!sigma_.empty()) {
+    weight_ = sigma_.AtReadings();
+    for (std::size_t i = 0; i < samples.weight.size(); ++i) weight_[i] *= samples.weight[i];
+    kernel_.weight = weight_.data();
   }
+  ScaleToMeanOne();
+}
+
+double Problem::Weight(std::size_t i) const {
+  double weight = kernel_.weight_scale;
+  if (kernel_.weight != nullptr) weight *= kernel_.weight[i];
+  if (kernel_.solid_angle != nullptr) weight *= kernel_.solid_angle[i];
+  return weight * AngularWeight(metric_, samples_.wi_z[i], samples_.wo_z[i]);
+}
+
+void Problem::ScaleToMeanOne() {
+  kernel_.weight_scale = 1;
+  if (kernel_.weight == nullptr && kernel_.solid_angle == nullptr && !kernel_.sin_i && !kernel_.sin_o) return;
+  double sum = 0;
+  for (std::size_t i = 0; i < size(); ++i) sum += Weight(i);
   if (!(sum > 0)) throw InputError("all weights of the samples are zero; choose another --metric or --weighting");
-  kernel_.weight_scale = static_cast<double>(samples.size()) / sum;
+  kernel_.weight_scale = static_cast<double>(size()) / sum;
+}
+
+void Problem::Reweigh(const KernelModel& model, ThreadPool* pool) {
+  if (sigma_.empty()) return;
+  pool->Run(RunCount(size()), [&](std::size_t run) {
+    const std::size_t begin = RunBegin(size(), run), end = RunBegin(size(), run + 1);
+    std::vector<std::vector<double>> values;
+    ModelValues(kernel_, model, begin, end, &values);
+    const std::vector<double> weight = sigma_.At(values, begin);
+    for (std::size_t i = begin; i < end; ++i)
+      weight_[i] = weight[i - begin] * (samples_.weight.empty() ? 1.0 : samples_.weight[i]);
+  });
+  ScaleToMeanOne();
 }
 
 KernelSums Problem::Sum(const KernelModel& model, bool gradient, ThreadPool* pool) const {

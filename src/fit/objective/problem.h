@@ -6,6 +6,7 @@
 
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/objective/kernel.h"
+#include "lobefit/fit/objective/sigma_weights.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"
 
@@ -23,17 +24,33 @@ class Problem {
  public:
   // `weighting` and metric from the recipe. Throws InputError where solid angles are wanted and the format has none.
   Problem(const Samples& samples, const Recipe& recipe);
+  Problem(const Problem&) = delete;
+  Problem& operator=(const Problem&) = delete;
 
   std::size_t size() const { return kernel_.count; }
   std::size_t channels() const { return kernel_.measured.size(); }
   const KernelSamples& kernel_samples() const { return kernel_; }
+  // Of a sample's squared residual, mean 1.
+  double Weight(std::size_t i) const;
+
+  // Stated uncertainties weigh by the value that the model has, which is not known before the fit: until the first call
+  // by the readings. Fits call this and descend again, until that changes nothing (iteratively reweighted least
+  // squares); the derivatives of the cost hold the weights fixed. Does nothing where no uncertainty is stated.
+  void Reweigh(const KernelModel& model, ThreadPool* pool);
+  bool depends_on_model() const { return !sigma_.empty(); }
 
   // Sums over all samples. The samples are cut into a fixed number of runs whose sums are added in order, so that the
   // result does not depend on the number of threads, and memory does not depend on the number of samples.
   KernelSums Sum(const KernelModel& model, bool gradient, ThreadPool* pool) const;
 
  private:
+  void ScaleToMeanOne();
+
+  const Samples& samples_;
+  Metric metric_;
   KernelSamples kernel_;
+  SigmaWeights sigma_;
+  std::vector<double> weight_;  // the samples' own times those of their uncertainties; empty where there are none
 };
 
 // Pointers to the samples' directions in the kernel's order.

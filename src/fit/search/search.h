@@ -24,4 +24,8 @@ struct DistinctMinimum {
 std::vector<DistinctMinimum> FindMinima(const Problem& problem, const Layout& layout, const Samples& samples,
                                         const FitOptions& options, ThreadPool* pool);
 
+// Where uncertainties are stated: weighs by the values of the best minimum and descends again, until that gains
+// nothing, then from the other minima on all samples. Changes nothing else.
+void DescendReweighted(const Layout& layout, ThreadPool* pool, Problem* problem, std::vector<DistinctMinimum>* minima);
+
 }  // namespace lobefit

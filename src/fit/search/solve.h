@@ -1,4 +1,4 @@
-// One descent with Ceres: a single residual block of constant size stands for all samples.
+// One descent of a model on the samples of a problem.
 #pragma once
 
 #include <string>
@@ -6,6 +6,7 @@
 
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/descent.h"
 
 namespace lobefit {
 
@@ -13,12 +14,13 @@ struct SolveOptions {
   int max_iterations = 300;
   // Relative decrease of the cost at which a descent ends.
   double function_tolerance = 1e-12;
+  bool use_ceres = true;  // DescentOptions::use_ceres
 };
 
 struct Solution {
-  std::vector<double> u;  // solver coordinates
-  double cost = 0;        // half the sum of rho
-  bool converged = false;
+  std::vector<double> u;   // solver coordinates
+  double cost = 0;         // half the sum of rho at u; infinite where the start had none
+  bool converged = false;  // u is a minimum within the bounds (IsMinimum)
   int iterations = 0;
   std::string message;
 };
@@ -31,5 +33,8 @@ Solution Solve(const Problem& problem, const Layout& layout, const std::vector<d
 // Gauss-Newton matrix and gradient of the cost at `u`, and the cost.
 double Linearise(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool,
                  Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient);
+
+// The problem over the box of the layout's bounds; all arguments must outlive it.
+BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, ThreadPool* pool);
 
 }  // namespace lobefit

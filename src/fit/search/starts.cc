@@ -5,8 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include <Eigen/Cholesky>
-
+#include "lobefit/fit/search/descent.h"
 #include "lobefit/fit/search/solve.h"
 #include "lobefit/math/directions.h"
 
@@ -62,47 +61,6 @@ bool SameKind(const Lobe& a, const Lobe& b) {
   return a.ndf == b.ndf && a.masking == b.masking && a.fresnel == b.fresnel && a.metal == b.metal;
 }
 
-// min 1/2 x^T H x + g^T x with low <= x <= high, by an active set: what leaves its bounds is held there.
-Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
-                            const Eigen::VectorXd& high) {
-  const Eigen::Index n = gradient.size();
-  std::vector<int> held(static_cast<std::size_t>(n), 0);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index round = 0; round <= n; ++round) {
-    std::vector<Eigen::Index> free;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (held[static_cast<std::size_t>(i)] == 0) free.push_back(i);
-    }
-    if (free.empty()) break;
-    const auto m = static_cast<Eigen::Index>(free.size());
-    Eigen::MatrixXd h(m, m);
-    Eigen::VectorXd rhs(m);
-    for (Eigen::Index a = 0; a < m; ++a) {
-      rhs(a) = -gradient(free[static_cast<std::size_t>(a)]);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        if (held[static_cast<std::size_t>(i)] != 0) rhs(a) -= hessian(free[static_cast<std::size_t>(a)], i) * x(i);
-      }
-      for (Eigen::Index b = 0; b < m; ++b)
-        h(a, b) = hessian(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(b)]);
-      // A column without any signal keeps its parameter where it is.
-      if (!(h(a, a) > 0)) h(a, a) = 1;
-    }
-    const Eigen::VectorXd step = h.ldlt().solve(rhs);
-    bool left = false;
-    for (Eigen::Index a = 0; a < m; ++a) {
-      const Eigen::Index i = free[static_cast<std::size_t>(a)];
-      x(i) = std::isfinite(step(a)) ? step(a) : 0.0;
-      if (x(i) < low(i) || x(i) > high(i)) {
-        x(i) = std::clamp(x(i), low(i), high(i));
-        held[static_cast<std::size_t>(i)] = 1;
-        left = true;
-      }
-    }
-    if (!left) break;
-  }
-  return x;
-}
-
 }  // namespace
 
 std::vector<std::size_t> StratifiedSubsample(std::size_t samples, std::size_t count, std::uint64_t seed) {
@@ -121,8 +79,8 @@ std::vector<std::size_t> StratifiedSubsample(std::size_t samples, std::size_t co
   return indices;
 }
 
-std::vector<double> LinearisedWeights(const Samples& samples, Metric metric) {
-  std::vector<double> weight(samples.size(), 0.0);
+std::vector<double> LinearisedWeights(const Samples& samples, Metric metric, const NoiseModel& noise) {
+  std::vector<double> weight(samples.size()), value(samples.size());
   double mean = 0;
   for (const std::vector<double>& values : samples.values) {
     for (std::size_t i = 0; i < samples.size(); ++i) mean += std::fabs(values[i] * samples.wi_z[i]);
@@ -134,12 +92,16 @@ std::vector<double> LinearisedWeights(const Samples& samples, Metric metric) {
     double v = 0;
     for (const std::vector<double>& values : samples.values) v += values[i] * samples.wi_z[i];
     v = std::max(v / static_cast<double>(samples.values.size()), floor);
-    double slope = 1;
-    if (TransformOf(metric) == Transform::kLog1p) slope = 1 / (1 + v);
-    if (TransformOf(metric) == Transform::kCubeRoot) slope = 1 / std::cbrt(v * v);
-    if (TransformOf(metric) == Transform::kRelative) slope = 1 / v;
-    weight[i] = slope * slope * (samples.weight.empty() ? 1.0 : samples.weight[i]);
+    value[i] = v;
   }
+  const std::vector<double> one(samples.size(), 1.0);
+  InverseSlopes(TransformOf(metric, noise), value.data(), one.data(), value.size(), weight.data());
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    weight[i] = (samples.weight.empty() ? 1.0 : samples.weight[i]) / (weight[i] * weight[i]);
+  const SigmaWeights sigma(samples, metric, noise);
+  if (sigma.empty()) return weight;
+  const std::vector<double> stated = sigma.AtReadings();
+  for (std::size_t i = 0; i < samples.size(); ++i) weight[i] *= stated[i];
   return weight;
 }
 
@@ -221,7 +183,8 @@ std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, co
   // Amplitudes first under the metric linearised about the measured values, where one step is exact; then under the
   // metric itself.
   Samples weighted = samples;
-  weighted.weight = LinearisedWeights(samples, recipe.metric);
+  weighted.sigma.clear();  // they are in the weights
+  weighted.weight = LinearisedWeights(samples, recipe.metric, recipe.noise);
   Recipe linear = recipe;
   linear.metric = Metric::kCosineL2;
   linear.loss = Loss::kNone;

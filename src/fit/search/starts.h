@@ -29,8 +29,9 @@ std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double p
 Ellipsoid PeakAxis(const Samples& samples, Ndf ndf, double plane_azimuth);
 
 // Weights that turn the squared differences of f cos_theta_i (of f for the relative metric) into the metric's, to first
-// order about the measured values: (dT/dv)^2 at the measured v, times the samples' own.
-std::vector<double> LinearisedWeights(const Samples& samples, Metric metric);
+// order about the measured values: (dT/dv)^2 at the measured v, times the samples' own and those of stated
+// uncertainties.
+std::vector<double> LinearisedWeights(const Samples& samples, Metric metric, const NoiseModel& noise);
 
 // Best amplitudes and albedos for the shapes in `u`, in place, within their bounds: Gauss-Newton on the linear
 // parameters only, a few steps (one is exact where the metric is quadratic in f_r). Returns the cost.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
@@ -73,9 +74,10 @@ void Describe(const Recipe& recipe, const Measurement& measurement, const std::v
   material->wavelengths_nm = measurement.channels.wavelengths_nm;
   material->model.diffuse = Diffuse::kNone;
   const std::vector<std::vector<double>> f_r = Predict(*material, measurement.samples, pool);
-  material->errors = ErrorsUnderAllMetrics(recipe.weighting, measurement.samples, f_r, pool);
-  material->cost = SumSquares(recipe.metric, recipe.weighting, true, measurement.samples, f_r).MeanSquare() *
-                   static_cast<double>(measurement.samples.size() * f_r.size()) / 2;
+  material->errors = ErrorsUnderAllMetrics(recipe.noise, recipe.weighting, measurement.samples, f_r, pool);
+  material->cost =
+      SumSquares(recipe.metric, recipe.noise, recipe.weighting, true, measurement.samples, f_r).MeanSquare() *
+      static_cast<double>(measurement.samples.size() * f_r.size()) / 2;
   DescribeEnd(nodes, &material->termination);
   material->remarks = measurement.remarks;
   const std::size_t groups = GroupByIncidence(measurement).wi.size();
@@ -107,11 +109,14 @@ Material FitSel(const Recipe& wanted, const FitOptions& options, Measurement* me
   SetAsideForRecipe(recipe, measurement);
   if (recipe.weighting == Weighting::kSolidAngle && measurement->samples.solid_angle.empty())
     Problem(measurement->samples, recipe);  // says what is missing
+  if (recipe.metric == Metric::kAsinh)
+    throw InputError("recipe '" + recipe.name +
+                     "': metric 'asinh' is for models; tables of lobes take log or cube-root");
   const SelRecipe& sel = *recipe.sel;
   std::vector<SelNode> nodes = MakeSelNodes(*measurement, recipe);
   JoinNeighbours(&nodes);
   SelSliceOptions slice_options;
-  slice_options.metric = recipe.metric;
+  slice_options.transform = TransformOf(recipe.metric, recipe.noise);
   slice_options.quantity = sel.quantity;
   ThreadPool pool(std::max(1, options.threads));
   Progress progress("fitting lobes", nodes.size() * (1 + kSweeps + (sel.bound ? 1 : 0)));

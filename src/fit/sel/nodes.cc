@@ -8,6 +8,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/fit/objective/prediction.h"
+#include "lobefit/fit/objective/sigma_weights.h"
 #include "lobefit/fit/search/starts.h"
 #include "lobefit/measurement/incidence.h"
 
@@ -26,6 +27,11 @@ SelSamples SamplesOf(const Samples& samples, const std::vector<std::size_t>& mem
     gathered.cos_o.push_back(samples.wo_z[i]);
     gathered.weight.push_back(SampleWeight(recipe.metric, recipe.weighting, true, samples, i));
     for (std::size_t c = 0; c < samples.values.size(); ++c) gathered.f_r[c].push_back(samples.values[c][i]);
+  }
+  const Samples own = samples.sigma.empty() ? Samples() : samples.Subset(members);
+  if (const SigmaWeights sigma(own, recipe.metric, recipe.noise); !sigma.empty()) {
+    const std::vector<double> stated = sigma.AtReadings();
+    for (std::size_t i = 0; i < gathered.size(); ++i) gathered.weight[i] *= stated[i];
   }
   // Mean 1, so that pulls weigh the same under every weighting. Along the normal the sines of ngan and low-log vanish.
   const double sum = std::accumulate(gathered.weight.begin(), gathered.weight.end(), 0.0);

@@ -14,28 +14,6 @@ constexpr double kMaxT = 6.9, kMaxS = 2.2, kMaxOffset = 1, kMinLog = -40;
 constexpr double kMostOverSamples = 4;
 constexpr Eigen::Index kShape = SelObjective::kShape;
 
-struct Transformed {
-  double value, derivative;  // of a model's f_r
-};
-
-Transformed Transform1(Metric metric, double f, double cos_i, double measured) {
-  switch (metric) {
-    case Metric::kLog:
-    case Metric::kLowLog:
-      return {std::log1p(f * cos_i), cos_i / (1 + f * cos_i)};
-    case Metric::kCubeRoot: {
-      const double root = std::cbrt(f * cos_i);
-      return {root, f > 0 ? cos_i / (3 * root * root) : 0.0};
-    }
-    case Metric::kRelative:
-      return {f / measured, 1 / measured};
-    case Metric::kCosineL2:
-    case Metric::kNgan:
-      return {f * cos_i, cos_i};
-  }
-  return {0, 0};
-}
-
 SelShape ShapeAt(const SelObjective::Coordinates& u, Eigen::Index lobe) {
   const double* x = u.data() + kShape * lobe;
   SelShape shape;
@@ -78,15 +56,11 @@ SelObjective::SelObjective(const SelSamples& samples, std::size_t lobes, const S
       options_(options),
       pulls_(pulls),
       lobes_(static_cast<Eigen::Index>(lobes)),
-      channels_(static_cast<Eigen::Index>(samples.channels())),
-      target_(samples.channels(), std::vector<double>(samples.size())) {
+      channels_(static_cast<Eigen::Index>(samples.channels())) {
   for (std::size_t c = 0; c < samples.channels(); ++c) {
     double brightest = 1e-12;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const double m = samples.f_r[c][i];
+    for (std::size_t i = 0; i < samples.size(); ++i)
       brightest = std::max(brightest, samples.Value(options.quantity, c, i));
-      target_[c][i] = Transform1(options.metric, m, samples.cos_i[i], m).value;
-    }
     most_.push_back(std::log(kMostOverSamples * brightest));
   }
 }
@@ -99,9 +73,12 @@ double SelObjective::High(Eigen::Index k) const {
 
 double SelObjective::Low(Eigen::Index k) const { return k >= kShape * lobes_ ? kMinLog : -High(k); }
 
-SelObjective::Coordinates SelObjective::Clamped(Coordinates u) const {
-  for (Eigen::Index k = 0; k < size(); ++k) u(k) = std::clamp(u(k), Low(k), High(k));
-  return u;
+SelObjective::Coordinates SelObjective::Low() const {
+  return Coordinates::NullaryExpr(size(), [this](Eigen::Index k) { return Low(k); });
+}
+
+SelObjective::Coordinates SelObjective::High() const {
+  return Coordinates::NullaryExpr(size(), [this](Eigen::Index k) { return High(k); });
 }
 
 bool SelObjective::IsAtLimit(const Coordinates& u) const {
@@ -109,16 +86,6 @@ bool SelObjective::IsAtLimit(const Coordinates& u) const {
     if (u(k) >= High(k) || (k < kShape * lobes_ && u(k) <= Low(k))) return true;
   }
   return false;
-}
-
-void SelObjective::Hold(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const {
-  for (Eigen::Index k = 0; k < size(); ++k) {
-    const bool held = (u(k) <= Low(k) && (*gradient)(k) > 0) || (u(k) >= High(k) && (*gradient)(k) < 0);
-    if (!held) continue;
-    hessian->row(k).setZero();
-    hessian->col(k).setZero();
-    (*gradient)(k) = 0;
-  }
 }
 
 SelObjective::Coordinates SelObjective::From(const SelSlice& slice) const {
@@ -135,7 +102,7 @@ SelObjective::Coordinates SelObjective::From(const SelSlice& slice) const {
       u(Amplitude(l, c)) = std::log(slice.amplitude[static_cast<std::size_t>(l)][static_cast<std::size_t>(c)]);
   }
   for (Eigen::Index c = 0; c < channels_; ++c) u(Constant(c)) = std::log(slice.constant[static_cast<std::size_t>(c)]);
-  return Clamped(u);
+  return u.cwiseMax(Low()).cwiseMin(High());
 }
 
 SelSlice SelObjective::ToSlice(const Coordinates& u) const {
@@ -195,23 +162,36 @@ double SelObjective::SumSquares(const Coordinates& u, Eigen::MatrixXd* hessian, 
     gradient->setZero(size());
   }
   const auto columns = static_cast<std::size_t>(kShape * lobes_ + lobes_ + 1);
-  LobeValues values = {std::vector<double>(at.lobes.size()), std::vector<std::array<double, kShape>>(at.lobes.size())};
   Row row = {std::vector<Eigen::Index>(columns), std::vector<double>(columns)};
+  const LobeValues empty = {std::vector<double>(at.lobes.size()),
+                            std::vector<std::array<double, kShape>>(at.lobes.size())};
+  constexpr std::size_t kPiece = 64;
+  std::vector<LobeValues> values(std::min(kPiece, samples_.size()), empty);
+  std::array<double, kPiece> to_f = {}, f = {}, residual = {}, slope = {};
   double sum = 0;
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    EvaluateLobes(at, i, wanted, &values);
-    const double to_f = options_.quantity == SelQuantity::kBrdf ? 1.0 : 1 / samples_.cos_o[i];
+  for (std::size_t begin = 0; begin < samples_.size(); begin += kPiece) {
+    const std::size_t count = std::min(kPiece, samples_.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      EvaluateLobes(at, begin + i, wanted, &values[i]);
+      to_f[i] = options_.quantity == SelQuantity::kBrdf ? 1.0 : 1 / samples_.cos_o[begin + i];
+    }
     for (Eigen::Index c = 0; c < channels_; ++c) {
-      const auto channel = static_cast<std::size_t>(c);
-      double g = at.linear(lobes_ * channels_ + c);
-      for (Eigen::Index l = 0; l < lobes_; ++l)
-        g += at.linear(l * channels_ + c) * values.k[static_cast<std::size_t>(l)];
-      const Transformed model = Transform1(options_.metric, g * to_f, samples_.cos_i[i], samples_.f_r[channel][i]);
-      const double residual = model.value - target_[channel][i], w = samples_.weight[i];
-      sum += w * residual * residual;
-      if (!wanted) continue;
-      FillRow(at, values, c, model.derivative * to_f, &row);
-      row.AddTo(w, residual, hessian, gradient);
+      for (std::size_t i = 0; i < count; ++i) {
+        double g = at.linear(lobes_ * channels_ + c);
+        for (Eigen::Index l = 0; l < lobes_; ++l)
+          g += at.linear(l * channels_ + c) * values[i].k[static_cast<std::size_t>(l)];
+        f[i] = g * to_f[i];
+      }
+      Residuals(options_.transform, f.data(), samples_.cos_i.data() + begin,
+                samples_.f_r[static_cast<std::size_t>(c)].data() + begin, nullptr, count, residual.data(),
+                slope.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        const double w = samples_.weight[begin + i];
+        sum += w * residual[i] * residual[i];
+        if (!wanted) continue;
+        FillRow(at, values[i], c, slope[i] * to_f[i], &row);
+        row.AddTo(w, residual[i], hessian, gradient);
+      }
     }
   }
   return sum;

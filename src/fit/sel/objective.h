@@ -28,8 +28,9 @@ class SelObjective {
   Eigen::Index size() const { return kShape * lobes_ + (lobes_ + 1) * channels_; }
   Coordinates From(const SelSlice& slice) const;
   SelSlice ToSlice(const Coordinates& u) const;
-  // Within the limits.
-  Coordinates Clamped(Coordinates u) const;
+  // The limits.
+  Coordinates Low() const;
+  Coordinates High() const;
 
   // Whether a coordinate stands at its limit. An amplitude or constant of nothing is no limit.
   bool IsAtLimit(const Coordinates& u) const;
@@ -38,8 +39,6 @@ class SelObjective {
   double SumSquares(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
   // The pulls' part of the objective, added to hessian and gradient unless null.
   double Pulls(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
-  // Takes coordinates that the descent presses against a limit out of the step, so that the others go on at full speed.
-  void Hold(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
 
  private:
   struct Prepared;
@@ -70,8 +69,7 @@ class SelObjective {
   const SelSliceOptions& options_;
   const std::vector<SelPull>& pulls_;
   Eigen::Index lobes_, channels_;
-  std::vector<std::vector<double>> target_;  // transformed measured values, [channel][sample]
-  std::vector<double> most_;                 // ln of the largest amplitude, [channel]
+  std::vector<double> most_;  // ln of the largest amplitude, [channel]
 };
 
 }  // namespace lobefit

@@ -1,10 +1,6 @@
 #include "lobefit/fit/sel/slice.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include <Eigen/Cholesky>
-
+#include "lobefit/fit/search/descent.h"
 #include "lobefit/fit/sel/objective.h"
 
 namespace lobefit {
@@ -16,39 +12,25 @@ std::size_t SelFreeParameters(std::size_t lobes, std::size_t channels) {
 SelSliceFit FitSelSlice(const SelSamples& samples, const SelSlice& start, const SelSliceOptions& options,
                         const std::vector<SelPull>& pulls) {
   const SelObjective objective(samples, start.lobes.size(), options, pulls);
-  SelObjective::Coordinates u = objective.From(start);
-  Eigen::MatrixXd hessian;
-  Eigen::VectorXd gradient;
+  BoundedObjective bounded;
+  bounded.low = objective.Low();
+  bounded.high = objective.High();
+  bounded.residuals = samples.size() * samples.channels();
+  bounded.evaluate = [&](const Eigen::VectorXd& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) {
+    return (objective.SumSquares(u, hessian, gradient) + objective.Pulls(u, hessian, gradient)) / 2;
+  };
+  DescentOptions descent_options;
+  descent_options.max_iterations = options.max_iterations;
+  descent_options.function_tolerance = 1e-7;
+  descent_options.damping_floor = 1e-12;
+  const Descent descent = Descend(bounded, objective.From(start), descent_options);
   SelSliceFit fit;
-  fit.sum_squares = objective.SumSquares(u, &hessian, &gradient);
-  fit.objective = fit.sum_squares + objective.Pulls(u, &hessian, &gradient);
-  double damping = 1e-3;
-  // Marquardt's scaling, with a floor for coordinates that nothing depends on.
-  while (fit.iterations < options.max_iterations && !fit.converged && damping < 1e12) {
-    ++fit.iterations;
-    Eigen::MatrixXd damped = hessian;
-    Eigen::VectorXd slope = gradient;
-    objective.Hold(u, &damped, &slope);
-    const double floor = 1e-12 * std::max(hessian.diagonal().maxCoeff(), 1e-300);
-    damped.diagonal() += damping * damped.diagonal().cwiseMax(floor).eval();
-    damped.diagonal().array() += floor;
-    const SelObjective::Coordinates next = objective.Clamped(u - damped.ldlt().solve(slope));
-    const double sum_squares = objective.SumSquares(next, nullptr, nullptr);
-    const double value = sum_squares + objective.Pulls(next, nullptr, nullptr);
-    if (!(value <= fit.objective)) {
-      // A rejected step of no length: this is the minimum to rounding.
-      if ((next - u).norm() <= 1e-10 * (1 + u.norm())) fit.converged = true;
-      damping *= 8;
-      continue;
-    }
-    fit.converged = fit.objective - value <= 1e-7 * fit.objective;
-    u = next;
-    damping = std::max(damping / 5, 1e-12);
-    fit.sum_squares = objective.SumSquares(u, &hessian, &gradient);
-    fit.objective = fit.sum_squares + objective.Pulls(u, &hessian, &gradient);
-  }
-  fit.at_limit = objective.IsAtLimit(u);
-  fit.slice = objective.ToSlice(u);
+  fit.iterations = descent.iterations;
+  fit.converged = descent.converged;
+  fit.objective = 2 * descent.cost;
+  fit.sum_squares = fit.objective - objective.Pulls(descent.u, nullptr, nullptr);
+  fit.at_limit = objective.IsAtLimit(descent.u);
+  fit.slice = objective.ToSlice(descent.u);
   fit.slice.theta_i = start.theta_i;
   fit.slice.phi_i = start.phi_i;
   return fit;

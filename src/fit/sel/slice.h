@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "lobefit/core/sel/sel_table.h"
+#include "lobefit/fit/metric/transform.h"
 #include "lobefit/fit/sel/samples.h"
-#include "lobefit/recipe/recipe.h"
 
 namespace lobefit {
 
@@ -18,7 +18,7 @@ struct SelPull {
 };
 
 struct SelSliceOptions {
-  Metric metric = Metric::kLog;
+  Transform transform;  // of the metric
   SelQuantity quantity = SelQuantity::kBrdfCosineO;
   // Flat valleys between two lobes of nearly equal widths take 100 to 300 steps.
   int max_iterations = 400;

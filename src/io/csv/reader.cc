@@ -92,7 +92,7 @@ class CsvReader {
     Measurement measurement = builder->Finish();
     if (HasSigmas() && options_.repeated == RepeatedRows::kFirst) {
       const std::vector<double> sigma = std::exchange(measurement.samples.weight, {});
-      WeighBySigma(sigma, &measurement);
+      AddSigma(sigma, &measurement.samples);
     }
     if (measurement.set_aside[SetAsideReason::kDuplicate] > 0) {
       remarks.emplace_back("directions occur again; --repeated mean averages their rows instead of keeping the first");

@@ -43,20 +43,6 @@ TEST(EvaluateLoss, IsCeresToTheSecondDerivative) {
   }
 }
 
-// Efficiency at normal residuals: (E rho'-weighted derivative)^2 / E psi^2 with psi = r rho'.
-TEST(TuningConstant, LeavesNinetyFivePercentOfTheEfficiency) {
-  for (const Loss loss : {Loss::kHuber, Loss::kCauchy, Loss::kTukey}) {
-    double slope = 0, square = 0;
-    for (int k = -80000; k <= 80000; ++k) {
-      const double r = k * 1e-4, density = std::exp(-0.5 * r * r) / std::sqrt(2 * 3.14159265358979) * 1e-4;
-      const LossValue value = EvaluateLoss(loss, TuningConstant(loss), r * r);
-      slope += density * (value.first + 2 * r * r * value.second);
-      square += density * r * r * value.first * value.first;
-    }
-    EXPECT_NEAR(slope * slope / square, 0.95, 0.001) << static_cast<int>(loss);
-  }
-}
-
 TEST(RobustDeviation, IsTheStandardDeviationWhateverTheOutliers) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal(0, 0.3);

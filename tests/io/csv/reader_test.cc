@@ -148,10 +148,10 @@ TEST(Csv, RowsOfAWavelengthKeepTheirUncertainties) {
   const Measurement same = Read(
       "theta_i,theta_o,450nm,550nm,sigma\n10,20,1,2,0.3535533905932738\n"
       "10,30,1,2,3.5355339059327378\n");
-  ASSERT_EQ(m.samples.weight.size(), 2U);
-  ASSERT_EQ(same.samples.weight.size(), 2U);
-  EXPECT_GT(m.samples.weight[0], 1.5 * m.samples.weight[1]);
-  for (const std::size_t i : {0, 1}) EXPECT_NEAR(m.samples.weight[i], same.samples.weight[i], 1e-14);
+  ASSERT_EQ(m.samples.sigma.size(), 2U);
+  ASSERT_EQ(same.samples.sigma.size(), 2U);
+  EXPECT_NEAR(m.samples.sigma[1] / m.samples.sigma[0], 10, 1e-12);
+  for (const std::size_t i : {0, 1}) EXPECT_NEAR(m.samples.sigma[i], same.samples.sigma[i], 1e-14);
 
   const Measurement weighted = Read(
       "lambda,theta_i,theta_o,f,weight\n550,10,20,2,1\n450,10,20,1,3\n550,10,30,2,6\n450,10,30,1,6\n450,9,9,1,0\n");
@@ -194,14 +194,13 @@ TEST(Csv, ChosenColumnAndIgnoredOnes) {
   EXPECT_THROW(Read(text), InputError);
 }
 
-TEST(Csv, UncertaintiesBecomeWeights) {
+TEST(Csv, WeightsAndUncertaintiesAreKept) {
   const Measurement weight = Read("theta_i,theta_o,f,weight\n10,20,1,1\n10,30,1,3\n10,40,1,0\n");
   EXPECT_EQ(weight.samples.weight, (std::vector<double>{0.5, 1.5}));
   EXPECT_EQ(weight.set_aside[SetAsideReason::kFlagged], 1U);
-  // The inverse variance above the median: 0.1, 0.1, 0.3 give 1/2, 1/2, 1/10 up to a factor.
   const Measurement sigma = Read("theta_i,theta_o,f,sigma\n10,20,1,0.1\n10,30,1,0.1\n10,40,1,0.3\n");
-  EXPECT_NEAR(sigma.samples.weight[0] / sigma.samples.weight[2], 5, 1e-9);
-  EXPECT_NEAR(sigma.samples.weight[0] + sigma.samples.weight[1] + sigma.samples.weight[2], 3, 1e-12);
+  EXPECT_EQ(sigma.samples.sigma, (std::vector<double>{0.1, 0.1, 0.3}));
+  EXPECT_TRUE(sigma.samples.weight.empty());
 }
 
 TEST(Csv, RepeatedRowsAreMergedWhenAsked) {
@@ -213,17 +212,16 @@ TEST(Csv, RepeatedRowsAreMergedWhenAsked) {
   ASSERT_EQ(m.samples.size(), 3U);
   EXPECT_EQ(F(m, 0), 2);
   EXPECT_EQ(m.set_aside[SetAsideReason::kDuplicate], 0U);
-  EXPECT_EQ(m.samples.weight.size(), 3U);
+  EXPECT_EQ(m.samples.sigma.size(), 3U);
   // Standard deviation of 1 and 3 about 2: sqrt(2) / 2 of the mean.
   EXPECT_EQ(m.remarks[0], "2 repeated rows were merged to 1; a row scatters by 70.7 % of its mean");
 }
 
-TEST(Csv, ANoiseFloorBecomesWeights) {
+TEST(Csv, ANoiseFloorIsTheUncertaintyOfEveryReading) {
   ReadOptions options;
   options.noise_floor = 0.01;
   const Measurement m = Read("theta_i,theta_o,f\n10,20,0.001\n10,30,100\n10,40,0.002\n", options);
-  // A bright reading is certain in ln(1 + f cos), a dim one is not.
-  EXPECT_GT(m.samples.weight[1], 1.9 * m.samples.weight[0]);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(m.samples.sigma[i] * m.samples.wi_z[i], 0.01, 1e-15);
   EXPECT_EQ(m.conventions.at("noise-floor"), "0.01 (option)");
 }
 

@@ -1,0 +1,141 @@
+#include "lobefit/fit/inference/noise_bias.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "lobefit/fit/search/symmetric_eigen.h"
+
+namespace lobefit {
+namespace {
+
+constexpr double kMostNegative = 0.001, kMostNearFloor = 0.05, kMostErrors = 0.5, kLeastRelative = 0.02;
+
+double DeviationAt(const NoiseModel& noise, double v) { return std::hypot(noise.floor, noise.relative * v); }
+
+// J^T W (T'' s^2 / 2) and J^T W J of the samples.
+void AddShift(const Problem& problem, const Layout& layout, const KernelModel& kernel, const Samples& samples,
+              const NoiseModel& noise, const std::vector<std::vector<double>>& f_r, Eigen::MatrixXd* hessian,
+              Eigen::VectorXd* shift) {
+  constexpr std::size_t kPiece = 256;
+  std::vector<std::vector<double>> columns;
+  std::vector<double> level(kPiece), curvature(kPiece);
+  const std::vector<double> one(kPiece, 1.0);
+  Eigen::VectorXd row(shift->size());
+  for (std::size_t begin = 0; begin < problem.size(); begin += kPiece) {
+    const std::size_t count = std::min(problem.size(), begin + kPiece) - begin;
+    Columns(problem.kernel_samples(), kernel, begin, begin + count, &columns);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const double v = f_r[c][begin + i] * samples.wi_z[begin + i];
+        level[i] = std::max(v, 2 * DeviationAt(noise, v));
+      }
+      Curvatures(kernel.transform, level.data(), one.data(), count, curvature.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        row.setZero();
+        const double* value = columns[c].data() + i;
+        std::size_t j = 0;
+        for (; j < layout.shape_size(); ++j) row(static_cast<Eigen::Index>(j)) += value[j * count];
+        for (const Layout::Linear& linear : layout.linear(c)) {
+          if (linear.index >= 0) row(linear.index) += value[j * count];
+          ++j;
+        }
+        const double s = DeviationAt(noise, level[i]);
+        hessian->selfadjointView<Eigen::Upper>().rankUpdate(row);
+        *shift += row * (std::sqrt(problem.Weight(begin + i)) * 0.5 * curvature[i] * s * s);
+      }
+    }
+  }
+}
+
+std::string NoiseInWords(const NoiseModel& noise) {
+  return fmt::format("noise floor {:.2g}/sr, noise {:.2g} % of the value", noise.floor, 100 * noise.relative);
+}
+
+std::string BiasInWords(const NoiseBias& bias, const char* metric) {
+  if (!(bias.errors > kMostErrors)) return fmt::format("{} would be biased by such noise", metric);
+  return fmt::format("{} would be biased by such noise ({} by about {:.2g} standard errors)", metric, bias.coordinate,
+                     bias.errors);
+}
+
+}  // namespace
+
+std::optional<NoiseBias> PredictNoiseBias(const Problem& problem, const Layout& layout, const std::vector<double>& u,
+                                          const Eigen::MatrixXd& covariance, const Samples& samples,
+                                          const Incidences& incidences) {
+  const KernelModel kernel = layout.ToKernel(u.data());
+  std::vector<std::vector<double>> f_r;
+  ModelValues(problem.kernel_samples(), kernel, 0, problem.size(), &f_r);
+  const std::optional<NoiseModel> noise = EstimateNoise(samples, incidences, f_r);
+  if (!noise) return std::nullopt;
+  NoiseBias bias;
+  bias.noise = *noise;
+  const double share = 1 / static_cast<double>(samples.size() * f_r.size());
+  for (std::size_t c = 0; c < f_r.size(); ++c) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      bias.negative += samples.values[c][i] < 0 ? share : 0;
+      bias.near_floor += f_r[c][i] * samples.wi_z[i] < 3 * noise->floor ? share : 0;
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(layout.size());
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(n);
+  AddShift(problem, layout, kernel, samples, *noise, f_r, &hessian, &shift);
+  // Coordinates at a bound have variance 0: they stay there.
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (covariance(k, k) > 0) continue;
+    hessian.row(k).setZero();
+    hessian.col(k).setZero();
+    hessian(k, k) = 1;
+    shift(k) = 0;
+  }
+  hessian = Eigen::MatrixXd(hessian.selfadjointView<Eigen::Upper>());
+  const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 0.0; });
+  const SymmetricEigen eigen = DecomposeSymmetric(scale.asDiagonal() * hessian * scale.asDiagonal());
+  const Eigen::VectorXd inverse = eigen.values.unaryExpr([](double x) { return x > 1e-10 ? 1 / x : 0.0; });
+  const Eigen::VectorXd moved =
+      scale.asDiagonal() *
+      (eigen.vectors * (inverse.asDiagonal() * (eigen.vectors.transpose() * (scale.asDiagonal() * shift))));
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double errors = std::fabs(moved(k)) / std::sqrt(covariance(k, k));
+    if (!(errors > bias.errors) || !std::isfinite(errors)) continue;
+    bias.errors = errors;
+    bias.coordinate = layout.coordinates()[static_cast<std::size_t>(k)].name;
+  }
+  return bias;
+}
+
+bool WantsAsinh(const NoiseBias& bias) {
+  return bias.noise.floor > 0 &&
+         (bias.negative > kMostNegative || bias.near_floor > kMostNearFloor || bias.errors > kMostErrors);
+}
+
+NoiseModel NoiseForAsinh(const NoiseModel& estimated) {
+  return {estimated.floor, std::max(estimated.relative, kLeastRelative)};
+}
+
+std::string ToSwitchRemark(const NoiseBias& bias, Metric before) {
+  const NoiseModel used = NoiseForAsinh(bias.noise);
+  std::string why;
+  if (bias.negative > kMostNegative) {
+    why = fmt::format("{:.2g} % of the readings are negative", 100 * bias.negative);
+  } else if (bias.near_floor > kMostNearFloor) {
+    why = fmt::format("{:.2g} % of the fitted values lie below three times the noise floor", 100 * bias.near_floor);
+  } else {
+    why = "small values drown in noise";
+  }
+  const char* name = RowOf(before).name;
+  return fmt::format("{} ({}): fitted with metric asinh, knee {:.2g}/sr; {}. --metric {} keeps it", why,
+                     NoiseInWords(bias.noise), used.floor / used.relative, BiasInWords(bias, name), name);
+}
+
+std::string ToBiasRemark(const NoiseBias& bias, Metric metric) {
+  if (!(bias.errors > kMostErrors)) return "";
+  return fmt::format(
+      "metric {} is biased by the noise of these values ({}): {} by about {:.2g} standard errors; "
+      "--metric asinh is not",
+      RowOf(metric).name, NoiseInWords(bias.noise), bias.coordinate, bias.errors);
+}
+
+}  // namespace lobefit

@@ -1,0 +1,156 @@
+#include "lobefit/fit/inference/noise_estimate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lobefit/fit/metric/loss.h"
+#include "lobefit/math/vec.h"
+
+namespace lobefit {
+namespace {
+
+constexpr std::size_t kNeighbours = 6, kMostSamples = 20000, kMostOfIncidence = 1000, kFewest = 40;
+
+struct PseudoResidual {
+  double level, size;  // x_j and |e_j|
+};
+
+// Weights of the linear prediction at `at` from its neighbours; they sum to 1. Directions on a line determine no slope
+// across it: a ridge of 1e-6 on the slopes decides.
+std::array<double, kNeighbours> PredictionWeights(const Vec3& at, const std::array<Vec3, kNeighbours>& neighbours) {
+  const Vec3 first = Normalized(std::fabs(at.x) < 0.7 ? Cross(Vec3{1, 0, 0}, at) : Cross(Vec3{0, 1, 0}, at));
+  const Vec3 second = Cross(at, first);
+  std::array<double, kNeighbours> x = {}, y = {};
+  double mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
+  for (std::size_t k = 0; k < kNeighbours; ++k) {
+    x[k] = Dot(neighbours[k], first);
+    y[k] = Dot(neighbours[k], second);
+    mean_x += x[k] / kNeighbours;
+    mean_y += y[k] / kNeighbours;
+  }
+  for (std::size_t k = 0; k < kNeighbours; ++k) {
+    xx += (x[k] - mean_x) * (x[k] - mean_x);
+    xy += (x[k] - mean_x) * (y[k] - mean_y);
+    yy += (y[k] - mean_y) * (y[k] - mean_y);
+  }
+  const double ridge = 1e-6 * (xx + yy);
+  xx += ridge, yy += ridge;
+  const double determinant = xx * yy - xy * xy;
+  std::array<double, kNeighbours> weights = {};
+  for (std::size_t k = 0; k < kNeighbours; ++k) {
+    const double dx = x[k] - mean_x, dy = y[k] - mean_y;
+    // The prediction at the origin, (0, 0) - mean away from the mean.
+    const double slopes =
+        determinant > 0 ? (mean_x * (yy * dx - xy * dy) + mean_y * (xx * dy - xy * dx)) / determinant : 0.0;
+    weights[k] = 1.0 / kNeighbours - slopes;
+  }
+  return weights;
+}
+
+void AddIncidence(const Samples& samples, const std::vector<std::uint32_t>& members,
+                  const std::vector<std::vector<double>>& f_r, std::vector<PseudoResidual>* pairs) {
+  const std::size_t stride = (members.size() + kMostOfIncidence - 1) / kMostOfIncidence;
+  std::vector<std::pair<double, std::uint32_t>> near;
+  for (std::size_t j = 0; j < members.size(); j += stride) {
+    const std::uint32_t at = members[j];
+    near.clear();
+    for (const std::uint32_t other : members) {
+      const Vec3 gap = samples.wo(other) - samples.wo(at);
+      if (other != at) near.emplace_back(Dot(gap, gap), other);
+    }
+    std::partial_sort(near.begin(), near.begin() + kNeighbours, near.end());
+    std::array<Vec3, kNeighbours> directions = {};
+    for (std::size_t k = 0; k < kNeighbours; ++k) directions[k] = samples.wo(near[k].second);
+    const std::array<double, kNeighbours> a = PredictionWeights(samples.wo(at), directions);
+    for (std::size_t c = 0; c < f_r.size(); ++c) {
+      const auto residual = [&](std::uint32_t i) { return (samples.values[c][i] - f_r[c][i]) * samples.wi_z[i]; };
+      double e = residual(at), squares = 1, level = f_r[c][at] * samples.wi_z[at];
+      level *= level;
+      for (std::size_t k = 0; k < kNeighbours; ++k) {
+        const std::uint32_t i = near[k].second;
+        const double v = f_r[c][i] * samples.wi_z[i];
+        e -= a[k] * residual(i);
+        squares += a[k] * a[k];
+        level += a[k] * a[k] * v * v;
+      }
+      pairs->push_back({std::sqrt(level / squares), std::fabs(e) / std::sqrt(squares)});
+    }
+  }
+}
+
+struct Bin {
+  double level, deviation;
+};
+
+std::vector<Bin> Bins(std::vector<PseudoResidual> pairs) {
+  std::sort(pairs.begin(), pairs.end(), [](const PseudoResidual& a, const PseudoResidual& b) {
+    return a.level != b.level ? a.level < b.level : a.size < b.size;
+  });
+  const std::size_t count = std::clamp<std::size_t>(pairs.size() / 40, 4, 24);
+  std::vector<Bin> bins;
+  for (std::size_t b = 0; b < count; ++b) {
+    const std::size_t begin = b * pairs.size() / count, end = (b + 1) * pairs.size() / count;
+    std::vector<double> sizes;
+    double square = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      sizes.push_back(pairs[i].size);
+      square += pairs[i].level * pairs[i].level / static_cast<double>(end - begin);
+    }
+    bins.push_back({std::sqrt(square), RobustDeviation(&sizes)});
+  }
+  return bins;
+}
+
+double Misfit(const std::vector<Bin>& bins, double ln_floor, double ln_relative) {
+  double sum = 0;
+  for (const Bin& bin : bins) {
+    const double gap = std::log(bin.deviation / std::hypot(std::exp(ln_floor), std::exp(ln_relative) * bin.level));
+    sum += EvaluateLoss(Loss::kHuber, 0.3, gap * gap).rho;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::optional<NoiseModel> EstimateNoise(const Samples& samples, const Incidences& incidences,
+                                        const std::vector<std::vector<double>>& f_r) {
+  std::vector<std::vector<std::uint32_t>> members(incidences.wi.size());
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    members[incidences.group[i]].push_back(static_cast<std::uint32_t>(i));
+  std::erase_if(members, [](const std::vector<std::uint32_t>& m) { return m.size() <= kNeighbours; });
+  std::size_t looked_at = 0;
+  for (const auto& m : members) looked_at += std::min(m.size(), kMostOfIncidence);
+  const std::size_t stride = (looked_at + kMostSamples - 1) / kMostSamples;
+  std::vector<PseudoResidual> pairs;
+  for (std::size_t g = 0; g < members.size(); g += stride) AddIncidence(samples, members[g], f_r, &pairs);
+  if (pairs.size() < kFewest) return std::nullopt;
+  std::vector<Bin> bins = Bins(std::move(pairs));
+  double highest = 0;
+  for (const Bin& bin : bins) highest = std::max({highest, bin.level, bin.deviation});
+  // Less than that is rounding.
+  const double rounding = 1e-9 * highest;
+  std::erase_if(bins, [&](const Bin& bin) { return !(bin.deviation > rounding); });
+  if (bins.size() < 3) return std::nullopt;
+  // Pattern search in the logarithms from the ends: the floor from the darkest bin, the relative noise from the
+  // brightest.
+  double at[2] = {std::log(bins.front().deviation),
+                  std::log(bins.back().deviation / std::max(bins.back().level, rounding))};
+  double best = Misfit(bins, at[0], at[1]);
+  for (double step = 0.5; step > 1e-3;) {
+    bool moved = false;
+    for (const auto& [k, sign] : {std::pair{0, 1}, {0, -1}, {1, 1}, {1, -1}}) {
+      double tried[2] = {at[0], at[1]};
+      tried[k] += sign * step;
+      const double misfit = Misfit(bins, tried[0], tried[1]);
+      if (!(misfit < best)) continue;
+      best = misfit;
+      at[k] = tried[k];
+      moved = true;
+    }
+    if (!moved) step /= 2;
+  }
+  return NoiseModel{std::exp(at[0]), std::exp(at[1])};
+}
+
+}  // namespace lobefit

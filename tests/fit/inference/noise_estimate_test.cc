@@ -1,0 +1,117 @@
+#include "lobefit/fit/inference/noise_estimate.h"
+
+#include <cmath>
+#include <random>
+
+#include "tests/support/synthetic.h"
+#include <gtest/gtest.h>
+
+#include "lobefit/fit/fit.h"
+
+namespace lobefit {
+namespace {
+
+Measurement Noisy(const NoiseModel& noise, std::uint64_t seed, double step_deg,
+                  std::vector<std::vector<double>>* truth) {
+  GoniometerLayout layout = StandardLayout();
+  layout.azimuths = {0};
+  layout.detector_step = DegreesToRadians(step_deg);
+  const SyntheticCase material = OneLobe(Ndf::kGgx, 0.25, 0.25, 0, 0, 0, {0.5}, {0.1});
+  Measurement measurement = Synthetic(material, layout, 0, seed);
+  *truth = measurement.samples.values;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0, 1);
+  for (std::size_t i = 0; i < measurement.samples.size(); ++i) {
+    const double v = (*truth)[0][i] * measurement.samples.wi_z[i];
+    measurement.samples.values[0][i] +=
+        std::hypot(noise.floor, noise.relative * v) * normal(random) / measurement.samples.wi_z[i];
+  }
+  return measurement;
+}
+
+TEST(EstimateNoise, FindsFloorAndRelativeNoiseAgainWhateverTheGainOfAnIncidence) {
+  for (const NoiseModel noise : {NoiseModel{0.02, 0.05}, {0.05, 0.02}, {0.002, 0.05}}) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      std::vector<std::vector<double>> truth;
+      Measurement measurement = Noisy(noise, seed, 8, &truth);
+      const Incidences incidences = GroupByIncidence(measurement);
+      // 5 % of gain more in every second incidence, which the model does not have.
+      for (std::size_t i = 0; i < measurement.samples.size(); ++i)
+        if (incidences.group[i] % 2 == 0) measurement.samples.values[0][i] += 0.02 * truth[0][i];
+      const std::optional<NoiseModel> found = EstimateNoise(measurement.samples, incidences, truth);
+      ASSERT_TRUE(found);
+      EXPECT_NEAR(found->floor / noise.floor, 1, noise.floor < 0.01 ? 0.5 : 0.2) << noise.floor << " " << seed;
+      if (noise.relative > 0.02) EXPECT_NEAR(found->relative / noise.relative, 1, 0.3) << noise.floor << " " << seed;
+    }
+  }
+}
+
+TEST(EstimateNoise, ExactValuesAndFewSamplesHaveNone) {
+  std::vector<std::vector<double>> truth;
+  const Measurement exact = Noisy({0, 0}, 1, 15, &truth);
+  EXPECT_FALSE(EstimateNoise(exact.samples, GroupByIncidence(exact), truth));
+  Measurement few = Noisy({0.02, 0.05}, 1, 15, &truth);
+  std::vector<std::size_t> some;
+  for (std::size_t i = 0; i < 30; ++i) some.push_back(i);
+  few.samples = few.samples.Subset(some);
+  truth[0].resize(30);
+  EXPECT_FALSE(EstimateNoise(few.samples, GroupByIncidence(few), truth));
+}
+
+// Readings about zero: the default metric would take the diffuse part for noise.
+TEST(Fit, TurnsToAsinhWhereNoiseReachesZeroAndSaysSo) {
+  std::vector<std::vector<double>> truth;
+  const Measurement noisy = Noisy({0.05, 0.01}, 3, 8, &truth);
+  const Recipe recipe = DefaultRecipe({{Lobe{Ndf::kGgx}}, Diffuse::kLambert}, "test");
+  Measurement measurement = noisy;
+  const Material material = Fit(recipe, {}, &measurement);
+  EXPECT_EQ(material.metric, "asinh");
+  ASSERT_FALSE(material.remarks.empty());
+  EXPECT_NE(material.remarks[0].find("of the readings are negative"), std::string::npos) << material.remarks[0];
+  EXPECT_NE(material.remarks[0].find("--metric cube-root keeps it"), std::string::npos) << material.remarks[0];
+  EXPECT_NEAR(material.parameters[0].values[0], 0.25, 4 * material.parameters[0].standard_error[0]);
+  EXPECT_NEAR(material.parameters[5].values[0], 0.5, 4 * material.parameters[5].standard_error[0]);
+  EXPECT_NEAR(material.parameters[6].values[0], 0.1, 4 * material.parameters[6].standard_error[0]);
+  // Where the user chose, the choice stands, with a warning.
+  Recipe given = recipe;
+  given.metric_given = true;
+  measurement = noisy;
+  const Material kept = Fit(given, {}, &measurement);
+  EXPECT_EQ(kept.metric, "cube-root");
+  ASSERT_FALSE(kept.remarks.empty());
+  EXPECT_NE(kept.remarks[0].find("is biased by the noise"), std::string::npos) << kept.remarks[0];
+  // asinh by name takes its knee from the data too.
+  given.metric = Metric::kAsinh;
+  measurement = noisy;
+  EXPECT_EQ(Fit(given, {}, &measurement).parameters[0].values, material.parameters[0].values);
+}
+
+TEST(Fit, KeepsTheDefaultMetricUnderNoiseProportionalToTheValue) {
+  std::vector<std::vector<double>> truth;
+  Measurement measurement = Noisy({0, 0.05}, 3, 8, &truth);
+  const Recipe recipe = DefaultRecipe({{Lobe{Ndf::kGgx}}, Diffuse::kLambert}, "test");
+  const Material material = Fit(recipe, {}, &measurement);
+  EXPECT_EQ(material.metric, "cube-root");
+  EXPECT_TRUE(material.remarks.empty());
+}
+
+// Stated uncertainties weigh at the model's value: at the reading they favour what fell low, by several standard errors
+// here.
+TEST(Fit, StatedUncertaintiesDoNotBias) {
+  double f0 = 0, error = 0;
+  constexpr int kTrials = 12;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<std::vector<double>> truth;
+    Measurement measurement = Noisy({0, 0.2}, 100 + static_cast<std::uint64_t>(trial), 8, &truth);
+    for (const double f : truth[0]) measurement.samples.sigma.push_back(0.2 * f);
+    Recipe recipe = DefaultRecipe({{Lobe{Ndf::kGgx}}, Diffuse::kLambert}, "test");
+    recipe.metric = Metric::kCosineL2;
+    const Material material = Fit(recipe, {}, &measurement);
+    f0 += material.parameters[5].values[0] / kTrials;
+    error += material.parameters[5].standard_error[0] / kTrials;
+  }
+  EXPECT_NEAR(f0, 0.5, 3.5 * error / std::sqrt(static_cast<double>(kTrials)));
+}
+
+}  // namespace
+}  // namespace lobefit
