@@ -158,4 +158,23 @@ double OneMinusCos(double x) {
   return 2 * s * s;
 }
 
+double GammaHalfRatio(double x, double* dlog) {
+  // Up to z >= 16 by Gamma(z + 1) = z Gamma(z), then Stirling's series of the quotient; its next term is below 1e-17.
+  double factor = 1, dlog_factor = 0, z = x;
+  for (; z < 16; z += 1) {
+    factor *= z / (z + 0.5);
+    dlog_factor += 0.5 / (z * (z + 0.5));
+  }
+  constexpr double kSeries[] = {-1.0 / 8, 1.0 / 192, -1.0 / 640, 17.0 / 14336, -31.0 / 18432, 691.0 / 180224};
+  const double inverse = 1 / z, square = inverse * inverse;
+  double sum = 0, slope = 0, power = inverse;
+  for (int k = 0; k < 6; ++k) {
+    sum += kSeries[k] * power;
+    slope -= (2 * k + 1) * kSeries[k] * power * inverse;
+    power *= square;
+  }
+  if (dlog != nullptr) *dlog = 0.5 * inverse + slope + dlog_factor;
+  return factor * std::sqrt(z) * std::exp(sum);
+}
+
 }  // namespace lobefit

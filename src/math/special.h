@@ -31,4 +31,8 @@ double OneMinusCos(double x);
 // atanh(x) - x without cancellation, |x| < 1.
 double AtanhMinusX(double x);
 
+// Gamma(x + 1/2) / Gamma(x) and, if asked, the derivative of its logarithm; x > 0. Without the logarithms of the two,
+// whose difference would lose digits where they are large.
+double GammaHalfRatio(double x, double* dlog = nullptr);
+
 }  // namespace lobefit

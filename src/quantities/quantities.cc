@@ -11,8 +11,8 @@ namespace {
 
 std::vector<Quantity> AllQuantities() {
   std::vector<Quantity> all;
-  for (auto* part :
-       {WalterQuantities, HeitzQuantities, SelQuantities, DEonQuantities, LoubetQuantities, InstrumentQuantities}) {
+  for (auto* part : {WalterQuantities, HeitzQuantities, SelQuantities, DEonQuantities, LoubetQuantities,
+                     InstrumentQuantities, ProfileQuantities, LayerQuantities}) {
     for (Quantity& quantity : part()) all.push_back(std::move(quantity));
   }
   std::sort(all.begin(), all.end(), [](const Quantity& a, const Quantity& b) { return a.name < b.name; });
@@ -88,15 +88,28 @@ std::vector<InputColumn> EllipsoidColumns() {
           AnyNumber("theta_z", "rad", "turn about the normal, positive is clockwise seen from +z")};
 }
 
-std::vector<InputColumn> SlopeColumns() {
-  InputColumn kind{"kind", "text", "slope distribution"};
-  kind.words = {"beckmann", "ggx"};
-  return {kind,
-          Positive("alpha_x", "roughness of the slopes along x"),
+std::vector<InputColumn> SlopeShapeColumns() {
+  return {Positive("alpha_x", "roughness of the slopes along x"),
           Positive("alpha_y", "roughness of the slopes along y"),
           Within("r", "1", "correlation of the slopes", -1, 1, true, true),
           AnyNumber("slope_x", "1", "mean slope along x, positive leans the normal to -x"),
           AnyNumber("slope_y", "1", "mean slope along y, positive leans the normal to -y")};
+}
+
+std::vector<InputColumn> SlopeColumns() {
+  InputColumn kind{"kind", "text", "slope distribution"};
+  kind.words = {"beckmann", "ggx"};
+  std::vector<InputColumn> columns = SlopeShapeColumns();
+  columns.insert(columns.begin(), kind);
+  return columns;
+}
+
+std::vector<ResultColumn> MaskingColumns() {
+  return {{"c", "1", "projected area of the mean surface, u_z - slope_x u_x - slope_y u_y"},
+          {"q", "1", "alpha_o^2 sin^2(theta), squared width of the slopes along u"},
+          {"a", "1", "c / sqrt(q), signed"},
+          {"Lambda", "1", "Smith's Lambda(a)"},
+          {"sigma", "1", "int D(m) <m.u> dm"}};
 }
 
 void AddDirection(Quantity* quantity, const std::string& prefix, const std::string& meaning) {
@@ -104,6 +117,12 @@ void AddDirection(Quantity* quantity, const std::string& prefix, const std::stri
   for (const char* axis : {"x", "y", "z"}) {
     quantity->inputs.push_back(AnyNumber(prefix + axis, "1", meaning + ", " + axis));
   }
+}
+
+void AddUpperDirection(Quantity* quantity, const std::string& prefix, const std::string& meaning) {
+  AddDirection(quantity, prefix, meaning + ", above the horizon");
+  quantity->inputs.back().low = 0;
+  quantity->inputs.back().low_open = true;
 }
 
 void AddDerivatives(Quantity* quantity, std::string value, std::string value_unit,
@@ -133,6 +152,14 @@ std::vector<std::string> ParameterNames(const Quantity& quantity) {
 Vec3 DirectionAt(const double* in) {
   const long double x = in[0], y = in[1], z = in[2], length = std::sqrt(x * x + y * y + z * z);
   return {static_cast<double>(x / length), static_cast<double>(y / length), static_cast<double>(z / length)};
+}
+
+ProjectedSlopes ExtendedProjection(const double* slopes, const double* u) {
+  using Real = long double;
+  const Real x = u[0], y = u[1], z = u[2], length = std::sqrt(x * x + y * y + z * z);
+  const Real c = (z - slopes[3] * x - slopes[4] * y) / length, A = slopes[0] * x / length, B = slopes[1] * y / length;
+  const Real q = ((A + B) * (A + B) * (1 + Real{slopes[2]}) + (A - B) * (A - B) * (1 - Real{slopes[2]})) / 2;
+  return {static_cast<double>(c), static_cast<double>(q), static_cast<double>(c / std::sqrt(q))};
 }
 
 }  // namespace lobefit

@@ -34,34 +34,20 @@ Quantity OffCenterDQuantity() {
   return q;
 }
 
-// c, q, a of the slopes `in` and the direction `u`, normalised and summed in extended precision: the terms of c cancel
-// where the mean surface is seen edge-on, and Beckmann's tail hangs on the last digits of a.
-ProjectedSlopes ExtendedProjection(const double* in, const double* u) {
-  using Real = long double;
-  const Real x = u[0], y = u[1], z = u[2], length = std::sqrt(x * x + y * y + z * z);
-  const Real c = (z - in[4] * x - in[5] * y) / length, A = in[1] * x / length, B = in[2] * y / length;
-  const Real q = ((A + B) * (A + B) * (1 + Real{in[3]}) + (A - B) * (A - B) * (1 - Real{in[3]})) / 2;
-  return {static_cast<double>(c), static_cast<double>(q), static_cast<double>(c / std::sqrt(q))};
-}
-
 Quantity SmithLambdaQuantity() {
   Quantity q = OfSlopes("smith_lambda", "Smith masking of a distribution of slopes",
                         "[Heitz] eq 69, 72, 83, 86, 96, 97; [Loubet] eq 1");
   const std::vector<std::string> parameters = ParameterNames(q);
   AddDirection(&q, "u", "direction");
-  q.results = {{"c", "1", "projected area of the mean surface, u_z - slope_x u_x - slope_y u_y"},
-               {"q", "1", "alpha_o^2 sin^2(theta), squared width of the slopes along u"},
-               {"a", "1", "c / sqrt(q), signed"},
-               {"Lambda", "1", "Smith's Lambda(a)"},
-               {"sigma", "1", "int D(m) <m.u> dm"},
-               {"G1_clamped", "1", "min(1, |u.n| / sigma)"},
-               {"clamped", "1", "1 where the minimum is 1", true}};
+  q.results = MaskingColumns();
+  q.results.push_back({"G1_clamped", "1", "min(1, |u.n| / sigma)"});
+  q.results.push_back({"clamped", "1", "1 where the minimum is 1", true});
   AddDerivatives(&q, "Lambda", "1", parameters);
   AddDerivatives(&q, "sigma", "1", parameters);
   q.evaluate = [](const double* in, double* out) {
     const SlopeDistribution s = SlopesAt(in);
     const Vec3 u = DirectionAt(in + 6);
-    const ProjectedSlopes p = ExtendedProjection(in, in + 6);
+    const ProjectedSlopes p = ExtendedProjection(in + 1, in + 6);
     bool clamped = false;
     out[0] = p.c;
     out[1] = p.q;
@@ -107,8 +93,8 @@ Quantity G2Quantity() {
     double dLambda_o[kSlopeParameters], dLambda_i[kSlopeParameters];
     SmithLambda(s, o, dLambda_o);
     SmithLambda(s, i, dLambda_i);
-    out[0] = SmithLambdaOfA(s.kind, ExtendedProjection(in, in + 6).a);
-    out[1] = SmithLambdaOfA(s.kind, ExtendedProjection(in, in + 9).a);
+    out[0] = SmithLambdaOfA(s.kind, ExtendedProjection(in + 1, in + 6).a);
+    out[1] = SmithLambdaOfA(s.kind, ExtendedProjection(in + 1, in + 9).a);
     out[2] = AzimuthDifference(o, i);
     out[3] = VanGinnekenLambda(out[2]);
     for (int kind = 0; kind < 4; ++kind) {

@@ -155,5 +155,19 @@ TEST(Special, CancellationFreeTrigonometry) {
   ExpectRelative(AtanhMinusX(0.25), 5.4128118829953416e-3, 4);
 }
 
+// mpmath, 40 digits.
+TEST(Special, GammaHalfRatio) {
+  const double reference[][3] = {{0.01, 0.017483353835975519346, 98.645897933705096718},
+                                 {0.5, 0.56418958354775628695, 1.3862943611198906188},
+                                 {1.1, 0.9392070491651822066, 0.54980239318455299602},
+                                 {15.9, 3.9562603126057745162, 0.031940739355319313875},
+                                 {40.0, 6.3048224474268303946, 0.012578118898390458475}};
+  for (const auto& [x, ratio, dlog] : reference) {
+    double found;
+    ExpectRelative(GammaHalfRatio(x, &found), ratio, 16);
+    ExpectRelative(found, dlog, 16);
+  }
+}
+
 }  // namespace
 }  // namespace lobefit

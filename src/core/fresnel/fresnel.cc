@@ -1,5 +1,9 @@
 #include "lobefit/core/fresnel/fresnel.h"
 
+#include <algorithm>
+
+#include "lobefit/math/quadrature.h"
+
 namespace lobefit {
 
 double FresnelSchlick(double c, double f0, double* dF_dc, double* dF_df0) {
@@ -7,6 +11,65 @@ double FresnelSchlick(double c, double f0, double* dF_dc, double* dF_df0) {
   if (dF_dc != nullptr) *dF_dc = -5.0 * (1.0 - f0) * m4;
   if (dF_df0 != nullptr) *dF_df0 = 1.0 - m5;
   return f0 + (1.0 - f0) * m5;
+}
+
+namespace {
+
+constexpr double kEdge = 1.0 / 7.0;                  // cosine at which the tint is said
+constexpr double kEdgeScale = 823543.0 / 46656.0;    // 1 / (w (1 - w)^6) = 7^7 / 6^6
+constexpr double kOneMinusEdge5 = 7776.0 / 16807.0;  // (1 - w)^5
+
+}  // namespace
+
+double SchlickF82Coefficient(double f0, double tint) {
+  return kEdgeScale * (1.0 - tint) * (f0 + (1.0 - f0) * kOneMinusEdge5);
+}
+
+double FresnelSchlickF82(double c, double f0, double tint, SchlickF82Gradient* gradient) {
+  const double m = 1.0 - c, m2 = m * m, m4 = m2 * m2, m5 = m4 * m;
+  const double edge = kEdgeScale * c * m5 * m, at_edge = f0 + (1.0 - f0) * kOneMinusEdge5;
+  if (gradient != nullptr) {
+    const double b = SchlickF82Coefficient(f0, tint);
+    gradient->dc = -5.0 * (1.0 - f0) * m4 - b * m5 * (1.0 - 7.0 * c);
+    gradient->df0 = 1.0 - m5 - (1.0 - tint) * (1.0 - kOneMinusEdge5) * edge;
+    gradient->dtint = at_edge * edge;
+  }
+  return f0 + (1.0 - f0) * m5 - (1.0 - tint) * at_edge * edge;
+}
+
+void FresnelCurveBasis(double c, double* basis, double* slope) {
+  constexpr double kKnots[] = {0, 0, 0, 0, 0.25, 0.6, 1, 1, 1, 1};
+  std::size_t i = 3;
+  while (i < kFresnelCurveSize - 1 && c >= kKnots[i + 1]) ++i;
+  // The triangle of de Boor and Cox; the slopes are differences of the quadratic splines.
+  double N[4] = {1, 0, 0, 0}, quadratic[3] = {0, 0, 0};
+  for (std::size_t p = 1; p < 4; ++p) {
+    if (p == 3) std::copy(N, N + 3, quadratic);
+    double saved = 0;
+    for (std::size_t j = 0; j < p; ++j) {
+      const double left = kKnots[i - p + 1 + j], right = kKnots[i + 1 + j];
+      const double part = N[j] / (right - left);
+      N[j] = saved + (right - c) * part;
+      saved = (c - left) * part;
+    }
+    N[p] = saved;
+  }
+  std::fill(basis, basis + kFresnelCurveSize, 0.0);
+  std::copy(N, N + 4, basis + i - 3);
+  if (slope == nullptr) return;
+  std::fill(slope, slope + kFresnelCurveSize, 0.0);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const double part = 3.0 * quadratic[j] / (kKnots[i + 1 + j] - kKnots[i - 2 + j]);
+    slope[i - 3 + j] -= part;
+    slope[i - 2 + j] += part;
+  }
+}
+
+void FresnelCurveOfSchlick(double f0, double* coefficients) {
+  // Minimax for f0 = 0 (math.md 8.3).
+  constexpr double kSchlick[kFresnelCurveSize] = {1.001385, 0.580863, 0.075146, -0.006957, -0.002188, 0.001385};
+  for (std::size_t k = 0; k < kFresnelCurveSize; ++k)
+    coefficients[k] = std::clamp(f0 + (1.0 - f0) * kSchlick[k], 0.0, 1.0);
 }
 
 double FresnelConductor(double c, const ConductorIndex& index, ConductorFresnelGradient* gradient) {
@@ -58,13 +121,49 @@ double FresnelDielectric(double c, double n, double* dF_dc, double* dF_dn) {
     return 1.0;
   }
   const double g = std::sqrt(gg), n2 = n * n;
-  const double rs = (c - g) / (c + g), rp = (n2 * c - g) / (n2 * c + g);
+  // r_s = (c - g) / (c + g), r_p = (n^2 c - g) / (n^2 c + g); where g is near c, as for n near 1, the differences are
+  // written out.
+  const double contrast = (n - 1.0) * (n + 1.0), s_sum = c + g, p_sum = n2 * c + g;
+  const bool near = n >= 1.0 && g < 2.0 * c;
+  const double rs = near ? -contrast / (s_sum * s_sum) : (c - g) / s_sum;
+  const double rp = near ? contrast * ((n2 + 1.0) * c * c - 1.0) / (p_sum * p_sum) : (n2 * c - g) / p_sum;
   // dr_s = 2 (g dc - c dg) / (c + g)^2, dr_p = 2 (g d(n^2 c) - n^2 c dg) / (n^2 c + g)^2, g dg = n dn + c dc.
-  const double s_scale = 2.0 / ((c + g) * (c + g) * g), p_scale = 2.0 / ((n2 * c + g) * (n2 * c + g) * g);
-  const double contrast = (n - 1.0) * (n + 1.0);
+  const double s_scale = 2.0 / (s_sum * s_sum * g), p_scale = 2.0 / (p_sum * p_sum * g);
   if (dF_dc != nullptr) *dF_dc = rs * s_scale * contrast + rp * p_scale * n2 * contrast;
   if (dF_dn != nullptr) *dF_dn = -rs * s_scale * c * n + rp * p_scale * n * c * (2.0 * gg - n2);
   return 0.5 * (rs * rs + rp * rp);
+}
+
+double DielectricTransmittance(double c, double n, double* dT_dc, double* dT_dn) {
+  double dF_dc, dF_dn;
+  FresnelDielectric(c, n, &dF_dc, &dF_dn);
+  if (dT_dc != nullptr) *dT_dc = -dF_dc;
+  if (dT_dn != nullptr) *dT_dn = -dF_dn;
+  const double g = std::sqrt((n - 1.0) * (n + 1.0) + c * c), n2 = n * n;
+  const double s_sum = c + g, p_sum = n2 * c + g;
+  // 1 - r_s^2 = 4 c g / (c + g)^2, 1 - r_p^2 = 4 n^2 c g / (n^2 c + g)^2.
+  return 2.0 * c * g * (1.0 / (s_sum * s_sum) + n2 / (p_sum * p_sum));
+}
+
+double DielectricMeanReflectance(double n, double* dF_dn) {
+  const double d = (n - 1.0) * (n + 1.0);
+  double sum = 0, slope = 0;
+  if (d > 0) {
+    // F falls within c < sqrt(d): panels 0, w, 2 w, 4 w .. 1.
+    static const QuadratureRule rule = GaussLegendre(20);
+    double from = 0;
+    for (double to = 0.5 * std::sqrt(d); from < 1.0; from = to, to = 2.0 * to) {
+      const double end = std::min(to, 1.0), half = 0.5 * (end - from), center = from + half;
+      for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+        const double c = center + half * rule.nodes[i], w = 2.0 * half * rule.weights[i] * c;
+        double dF;
+        sum += w * FresnelDielectric(c, n, nullptr, &dF);
+        slope += w * dF;
+      }
+    }
+  }
+  if (dF_dn != nullptr) *dF_dn = slope;
+  return sum;
 }
 
 }  // namespace lobefit

@@ -5,11 +5,30 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 namespace lobefit {
 
 // [Schlick 1994] F = f0 + (1 - f0) (1 - c)^5. Linear in f0: dF_df0 = 1 - (1 - c)^5.
 double FresnelSchlick(double c, double f0, double* dF_dc = nullptr, double* dF_df0 = nullptr);
+
+// Schlick with an edge tint [Hoffman 2019; Kutz 2021], as OpenPBR and MaterialX (color82) have it: F = S(c) - b c (1 -
+// c)^6, S Schlick's, b such that F = tint S at c = 1/7 (82 degrees). tint = 1 is Schlick. Linear in f0 and b; F can be
+// negative where f0 and tint are both small (math.md 8.3).
+struct SchlickF82Gradient {
+  double dc, df0, dtint;
+};
+double FresnelSchlickF82(double c, double f0, double tint, SchlickF82Gradient* gradient = nullptr);
+// b; dF/db = -c (1 - c)^6.
+double SchlickF82Coefficient(double f0, double tint);
+
+// F(c) = sum_k F_k b_k(c), cubic B-splines over the knots 0 0 0 0 .25 .6 1 1 1 1: six non-negative functions whose sum
+// is 1. F_0 is F at grazing, F_5 at normal incidence; coefficients in [0, 1] keep F there. basis: b_k = dF/dF_k;
+// slope: db_k/dc; null skips it. c = 1 belongs to the last interval.
+inline constexpr std::size_t kFresnelCurveSize = 6;
+void FresnelCurveBasis(double c, double* basis, double* slope = nullptr);
+// Coefficients of the curve nearest to Schlick's F, to .0017 for f0 >= .04, .006 at f0 = 0; none is negative.
+void FresnelCurveOfSchlick(double f0, double* coefficients);
 
 // Complex refractive index eta + i k, relative to the outside.
 struct ConductorIndex {
@@ -29,6 +48,14 @@ double FresnelConductor(double c, const ConductorIndex& index, ConductorFresnelG
 // Exact reflectance of a dielectric of relative index n > 0. For n < 1 total reflection is a kink of the physics:
 // beyond the critical angle F = 1 and both derivatives are 0.
 double FresnelDielectric(double c, double n, double* dF_dc = nullptr, double* dF_dn = nullptr);
+
+// 1 - F of a dielectric, n >= 1, as a sum of positive terms: keeps its digits towards grazing.
+double DielectricTransmittance(double c, double n, double* dT_dc = nullptr, double* dT_dn = nullptr);
+
+// Mean reflectance of a dielectric, n >= 1, for light that comes from all directions: outside, F_ex = 2 int_0^1 F(c) c
+// dc, and inside, 1 - (1 - F_ex) / n^2. [Elias 2001; closed form in math.md 8.4] By quadrature of a form without
+// subtraction, since the closed one has no digits left near n = 1.
+double DielectricMeanReflectance(double n, double* dF_dn = nullptr);
 
 // Definition of the conductor by amplitudes r_s = (c - w) / (c + w), r_p = (n^2 c - w) / (n^2 c + w), for any scalar.
 template <class T>

@@ -3,35 +3,30 @@
 #include <algorithm>
 
 namespace lobefit {
-namespace {
 
-// Q = |m~|^2 of the offset (X, Y) from the mean, scaled by any common factor of X and Y, with dQ/dX, dQ/dY and dQ/dr.
-struct Quadratic {
-  double value, dX, dY, dr;
-};
-
-Quadratic Evaluate(const SlopeDistribution& s, double X, double Y) {
+SlopeQuadratic EvaluateSlopeQuadratic(const SlopeDistribution& s, double X, double Y) {
   const double x = X / s.alpha_x, y = Y / s.alpha_y;
   const double difference = (x - y) / (1.0 - s.r), sum = (x + y) / (1.0 + s.r);
-  return {0.5 * ((x - y) * difference + (x + y) * sum), (sum + difference) / s.alpha_x, (sum - difference) / s.alpha_y,
+  return {X,
+          Y,
+          0.5 * ((x - y) * difference + (x + y) * sum),
+          (sum + difference) / s.alpha_x,
+          (sum - difference) / s.alpha_y,
           0.5 * (difference * difference - sum * sum)};
 }
 
-double Normalisation(const SlopeDistribution& s) {
+double SlopeNormalisation(const SlopeDistribution& s) {
   return kInvPi / (s.alpha_x * s.alpha_y * std::sqrt((1.0 - s.r) * (1.0 + s.r)));
 }
 
-// Gradient of Normalisation * g(Q) from g and g' = dg/dQ; `weight` is dX/dslope_x = dY/dslope_y.
-void FillGradient(const SlopeDistribution& s, const Quadratic& q, double X, double Y, double value, double slope,
-                  double weight, double* gradient) {
-  gradient[0] = -value / s.alpha_x - slope * q.dX * X / s.alpha_x;
-  gradient[1] = -value / s.alpha_y - slope * q.dY * Y / s.alpha_y;
+void FillSlopeGradient(const SlopeDistribution& s, const SlopeQuadratic& q, double value, double slope, double weight,
+                       double* gradient) {
+  gradient[0] = -value / s.alpha_x - slope * q.dX * q.X / s.alpha_x;
+  gradient[1] = -value / s.alpha_y - slope * q.dY * q.Y / s.alpha_y;
   gradient[2] = value * s.r / ((1.0 - s.r) * (1.0 + s.r)) + slope * q.dr;
   gradient[3] = slope * q.dX * weight;
   gradient[4] = slope * q.dY * weight;
 }
-
-}  // namespace
 
 OffCenter OffCenterFromSlopes(const SlopeDistribution& s, double jacobian[25]) {
   if (jacobian != nullptr) {
@@ -53,8 +48,8 @@ SlopeDistribution SlopesFromOffCenter(SlopeKind kind, const OffCenter& o) {
 
 double SlopeP22(const SlopeDistribution& s, double x, double y, double* gradient) {
   const double X = x - s.slope_x, Y = y - s.slope_y;
-  const Quadratic q = Evaluate(s, X, Y);
-  double value = Normalisation(s), slope;
+  const SlopeQuadratic q = EvaluateSlopeQuadratic(s, X, Y);
+  double value = SlopeNormalisation(s), slope;
   if (s.kind == SlopeKind::kBeckmann) {
     value *= std::exp(-q.value);
     slope = -value;
@@ -62,7 +57,7 @@ double SlopeP22(const SlopeDistribution& s, double x, double y, double* gradient
     value /= (1.0 + q.value) * (1.0 + q.value);
     slope = -2.0 * value / (1.0 + q.value);
   }
-  if (gradient != nullptr) FillGradient(s, q, X, Y, value, slope, -1.0, gradient);
+  if (gradient != nullptr) FillSlopeGradient(s, q, value, slope, -1.0, gradient);
   return value;
 }
 
@@ -75,9 +70,9 @@ double SlopeDistributionD(const SlopeDistribution& s, const Vec3& wm, double* gr
   // X m_z, Y m_z; GGX then needs no division by m_z and is finite at the horizon: P22 / m_z^4 = 1 / (pi ... (m_z^2 +
   // Q)^2).
   const double X = wm.x + s.slope_x * wm.z, Y = wm.y + s.slope_y * wm.z;
-  const Quadratic q = Evaluate(s, X, Y);
+  const SlopeQuadratic q = EvaluateSlopeQuadratic(s, X, Y);
   const double zz = wm.z * wm.z;
-  double value = Normalisation(s), slope, dz;
+  double value = SlopeNormalisation(s), slope, dz;
   if (s.kind == SlopeKind::kBeckmann) {
     value *= std::exp(-q.value / zz) / (zz * zz);
     slope = -value / zz;
@@ -88,7 +83,7 @@ double SlopeDistributionD(const SlopeDistribution& s, const Vec3& wm, double* gr
     slope = -2.0 * value / t;
     dz = 2.0 * wm.z * slope;
   }
-  if (gradient != nullptr) FillGradient(s, q, X, Y, value, slope, wm.z, gradient);
+  if (gradient != nullptr) FillSlopeGradient(s, q, value, slope, wm.z, gradient);
   if (dD_dwm != nullptr) *dD_dwm = {slope * q.dX, slope * q.dY, dz + slope * (q.dX * s.slope_x + q.dY * s.slope_y)};
   return value;
 }

@@ -29,6 +29,18 @@ struct SlopeDistribution {
 OffCenter OffCenterFromSlopes(const SlopeDistribution& s, double jacobian[25] = nullptr);
 SlopeDistribution SlopesFromOffCenter(SlopeKind kind, const OffCenter& off_center);
 
+// The parts of every density that depends on the squared distance from the mean alone. Q = |m~|^2 [eq 95] of an offset
+// (X, Y) from the mean (times any common factor, whose square Q then has), its derivatives in X, Y and r.
+struct SlopeQuadratic {
+  double X, Y, value, dX, dY, dr;
+};
+SlopeQuadratic EvaluateSlopeQuadratic(const SlopeDistribution& s, double X, double Y);
+// 1 / (pi alpha_x alpha_y sqrt(1 - r^2)).
+double SlopeNormalisation(const SlopeDistribution& s);
+// Gradient of value = SlopeNormalisation h(Q) with slope = SlopeNormalisation h'(Q); `weight` is dX / dslope_x.
+void FillSlopeGradient(const SlopeDistribution& s, const SlopeQuadratic& q, double value, double slope, double weight,
+                       double* gradient);
+
 // Density of slopes, int P22 dx dy = 1.
 double SlopeP22(const SlopeDistribution& s, double x, double y, double* gradient = nullptr);
 

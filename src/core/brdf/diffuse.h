@@ -1,0 +1,40 @@
+// Diffuse parts that depend on the directions: below a smooth dielectric, and energy-preserving Oren-Nayar.
+// (Lambertian microfacets: diffuse_facets.h.) Angles of directions above the horizon; a null gradient is skipped.
+#pragma once
+
+#include "lobefit/math/vec.h"
+
+namespace lobefit {
+
+// A Lambertian body of albedo rho below a smooth dielectric of index n, with all reflections inside [Elias 2001]:
+//   f_r = rho (1 - F(cos_i)) (1 - F(cos_o)) / (pi n^2 (1 - rho F_in)),  F_in = 1 - (1 - F_ex) / n^2.
+// Written by the apparent albedo rho' = (1 - F_in) rho / (1 - rho F_in), in which it is linear:
+//   f_r = rho' (1 - F(cos_i)) (1 - F(cos_o)) / (pi (1 - F_ex)).
+// Reciprocal. With the smooth reflection the directional albedo is F + (1 - F) rho' <= 1. n = 1 is Lambert. Domain: n
+// >= 1, cosines in (0, 1], albedos in [0, 1].
+struct InterfacedGradient {
+  double dcos_i, dcos_o, dior, dapparent;
+};
+double InterfacedDiffuse(double cos_i, double cos_o, double ior, double apparent,
+                         InterfacedGradient* gradient = nullptr);
+// rho' of rho, with d rho' / d rho and d rho' / dn; and back.
+double ApparentAlbedo(double rho, double ior, double* drho = nullptr, double* dior = nullptr);
+double AlbedoBelowInterface(double apparent, double ior);
+
+// Energy-preserving Oren-Nayar [Portsmouth, Kutz and Hill 2024, EON], as OpenPBR and MaterialX (energy compensation)
+// have it: single scattering f_ss and what scatters again f_ms. Changed from print: f_ms without the quotient that is
+// 0 / 0 at roughness 0. rho is the facets' albedo, roughness in [0, 1]; rho = 1 has albedo 1 at every angle. Kinks
+// where wi and wo are perpendicular in azimuth and, on the same side, where their polar angles are equal: continuous,
+// none in rho and roughness.
+struct OrenNayar {
+  double single, multiple;  // f_ss, f_ms, 1/sr
+  double dsingle_dalbedo, dmultiple_dalbedo;
+  double dsingle_droughness, dmultiple_droughness;
+};
+OrenNayar OrenNayarDiffuse(double albedo, double roughness, const Vec3& wi, const Vec3& wo);
+// Directional albedo of single scattering for rho = 1: E_F(cos_theta).
+double OrenNayarSingleAlbedo(double roughness, double cos_theta);
+// Directional albedo of the whole, seen from cos_theta.
+double OrenNayarAlbedo(double albedo, double roughness, double cos_theta);
+
+}  // namespace lobefit

@@ -1,0 +1,264 @@
+#include "lobefit/core/ndf/profile_masking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lobefit/math/quadrature.h"
+#include "lobefit/math/special.h"
+#include "lobefit/math/vec.h"
+
+namespace lobefit {
+namespace {
+
+constexpr int kTablePoints = 20;        // a panel
+constexpr std::size_t kSteps = 32;      // of the table between two knots, or for each doubling of a up to kFineEnd
+constexpr double kFineEnd = 32;         // beyond, M is a power
+constexpr std::size_t kTailSteps = 24;  // for each doubling from there on
+constexpr int kDoublings = 15;          // from kFineEnd to the end of the table; beyond, the closed form
+
+// s - a atan(s / a), s, a >= 0.
+double SMinusAtan(double s, double a) {
+  const double x = s / a;
+  if (!(x < 0.25)) return s - a * std::atan2(s, a);
+  const double xx = x * x;
+  double sum = 0, sign = 1, power = 1;
+  for (int n = 3; n < 33; n += 2) {
+    sum += sign * power / n;
+    sign = -sign;
+    power *= xx;
+  }
+  return a * x * xx * sum;
+}
+
+// M, T, P2 at a >= 1 of f = (1 + t)^-c, divided by (1 + a^2)^-c, and the derivatives of their logarithms by c less the
+// -ln(1 + a^2) of that factor. All terms are positive (math.md 8.2 with gamma = c in units of sqrt(c - 1)).
+struct PowerMoments {
+  double value[3], dlog[3];
+};
+PowerMoments PowerLawMoments(double a, double c) {
+  const double A = 1.0 + a * a, y = 1.0 / A;
+  double dlog_ratio;
+  const double ratio = GammaHalfRatio(c - 0.5, &dlog_ratio);  // Gamma(c) / Gamma(c - 1/2)
+  const double p2 = std::sqrt(kPi * A) / ratio;
+  // F = 2F1(c - 3/2, 1; c; y).
+  double F = 1, dF = 0, term = 1, dlog = 0;
+  for (int n = 0; n < 400 && term > 1e-19 * F; ++n) {
+    const double up = c - 1.5 + n, down = c + n;
+    term *= up / down * y;
+    dlog += 1.0 / up - 1.0 / down;
+    F += term;
+    dF += term * dlog;
+  }
+  // int x P2 = P2 A / (2 c - 3), M = that F / (2 c - 2), T = (the one less the other) / a.
+  const double half = 0.5 / (c - 1.0), first = p2 * A / (2.0 * c - 3.0), rest = 1.0 - half * F;
+  const double dfirst = -2.0 / (2.0 * c - 3.0) - dlog_ratio, dhalf = -1.0 / (c - 1.0);  // of the logarithms
+  return {{first * half * F, first * rest / a, p2},
+          {dfirst + dhalf + dF / F, dfirst - half * (dF + dhalf * F) / rest, -dlog_ratio}};
+}
+
+}  // namespace
+
+ProfileRule::ProfileRule(const ProfileSpline& spline, double a, const QuadratureRule& rule, int parts)
+    : a_(a), end_(spline.knots().back()) {
+  if (a >= end_) return;
+  // Radii at which panels end: the knots beyond a, then twice and four times the last; within the first panel the
+  // kernel turns at s = a.
+  std::vector<double> ends;
+  for (const double r : spline.knots()) {
+    if (r > a) ends.push_back(std::sqrt((r - a) * (r + a)));
+  }
+  for (const double factor : {2.0, 4.0}) ends.push_back(std::sqrt((factor * end_ - a) * (factor * end_ + a)));
+  std::vector<double> breaks;
+  for (double s = a; s > 0 && s < 0.7 * ends[0]; s *= 2) breaks.push_back(s);
+  breaks.insert(breaks.end(), ends.begin(), ends.end());
+  double from = 0;
+  for (const double to : breaks) {
+    const double step = (to - from) / parts;
+    for (int part = 0; part < parts; ++part) AddPanel(spline, from + step * part, from + step * (part + 1), rule);
+    from = to;
+  }
+  end_ *= 4;
+  const double A = 1.0 + a * a;
+  double j = 1, h = 1, sum_e = 0, sum_h = 0;
+  for (std::size_t n = 0; n < j_.size(); ++n) {
+    sum_e += j;
+    sum_h += h;
+    j_[n] = j;
+    e_[n] = sum_e;
+    h_[n] = sum_h;
+    const auto k = static_cast<double>(n);
+    j *= (k + 0.5) / (k + 1.0) * A;
+    h *= (k - 0.5) / (k + 1.0) * A;
+  }
+}
+
+void ProfileRule::AddPanel(const ProfileSpline& spline, double from, double to, const QuadratureRule& rule) {
+  const double half = 0.5 * (to - from), center = from + half;
+  for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+    const double s = center + half * rule.nodes[i], angle = std::atan2(s, a_);
+    const double u = std::log1p(a_ * a_ + s * s), w = 2.0 * half * rule.weights[i] * std::exp(-2.0 * u);
+    u_.push_back(u);
+    weight_.push_back({w * s * SMinusAtan(s, a_), w * s * angle, w});
+    basis_.resize(basis_.size() + spline.size());
+    spline.Evaluate(u, basis_.data() + basis_.size() - spline.size());
+  }
+}
+
+void ProfileRule::Apply(const Profile& profile, bool minus_ggx, double* moments, std::size_t stride) const {
+  const std::size_t K = profile.q().size();
+  for (std::size_t m = 0; m < 3; ++m) std::fill_n(moments + m * stride, K + 1, 0.0);
+  const double mass = 1.0 + profile.mass_excess();
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    const double* basis = basis_.data() + i * K;
+    double excess = 0;
+    for (std::size_t k = 0; k < K; ++k) excess += profile.q()[k] * basis[k];
+    const double f = std::exp(excess) / mass;
+    const double difference = minus_ggx ? (std::expm1(excess) - profile.mass_excess()) / mass : f;
+    for (std::size_t m = 0; m < 3; ++m) {
+      double* to = moments + m * stride;
+      to[0] += weight_[i][m] * difference;
+      const double weighted = weight_[i][m] * f;
+      for (std::size_t k = 0; k < K; ++k) to[k + 1] += weighted * basis[k];
+    }
+  }
+  AddTail(profile, minus_ggx, moments, stride);
+  // So far the derivatives lack -Z_k / Z times the value; everything is in units of pi.
+  double ggx[3] = {0, 0, 0};
+  if (minus_ggx) {
+    const double root = std::sqrt(1.0 + a_ * a_);
+    ggx[0] = 0.5 / (a_ + root);
+    ggx[1] = 0.5 / (root * (a_ + root));
+    ggx[2] = 0.5 / (root * root * root);
+  }
+  for (std::size_t m = 0; m < 3; ++m) {
+    double* to = moments + m * stride;
+    to[0] *= kInvPi;
+    for (std::size_t k = 0; k < K; ++k) to[k + 1] = kInvPi * to[k + 1] - (to[0] + ggx[m]) * profile.dlog_mass()[k];
+  }
+}
+
+// Beyond the circle of radius R = end_ f falls as (1 + t)^-c. For a < R: with Y = 1 + R^2, s_R = sqrt(R^2 - a^2),
+//   P2: f_R Y^(1/2) sum j_n Y^-n / (c + n - 1/2)
+//   T:  f_R / (c - 1) [Y atan(s_R / a) + (a / 2) Y^(1/2) sum e_n Y^-n / (c + n - 1/2)]
+//   M:  f_R / (c - 1) [Y (s_R - a atan(s_R / a)) + (1 / 2) Y^(3/2) sum h_n Y^-n / (c + n - 3/2)].
+void ProfileRule::AddTail(const Profile& profile, bool minus_ggx, double* moments, std::size_t stride) const {
+  const std::size_t K = profile.q().size();
+  const double Y = 1.0 + end_ * end_, root = std::sqrt(Y), u = std::log1p(end_ * end_);
+  // Values for f_R = 1 and the derivatives of their logarithms by c.
+  double log_shift = 0;  // a beyond R: f at a instead
+  const auto tail = [&](double c, double* dlog) {
+    std::array<double, 3> value;
+    if (a_ >= end_) {
+      const PowerMoments power = PowerLawMoments(a_, c);
+      const double scale = std::exp(c * log_shift);
+      for (std::size_t m = 0; m < 3; ++m) {
+        value[m] = power.value[m] * scale;
+        dlog[m] = power.dlog[m] + log_shift;
+      }
+      return value;
+    }
+    double sums[3] = {0, 0, 0}, slopes[3] = {0, 0, 0}, power = 1;
+    for (std::size_t n = 0; n < j_.size(); ++n, power /= Y) {
+      const double half = 1.0 / (c + static_cast<double>(n) - 0.5), more = 1.0 / (c + static_cast<double>(n) - 1.5);
+      const double terms[3] = {h_[n] * more, e_[n] * half, j_[n] * half};
+      for (std::size_t m = 0; m < 3; ++m) {
+        sums[m] += power * terms[m];
+        slopes[m] -= power * terms[m] * (m == 0 ? more : half);
+      }
+    }
+    const double s = std::sqrt((end_ - a_) * (end_ + a_)), rest = 1.0 / (c - 1.0);
+    const double factor[3] = {0.5 * Y * root * rest, 0.5 * a_ * root * rest, root};
+    const double edge[3] = {Y * SMinusAtan(s, a_) * rest, Y * std::atan2(s, a_) * rest, 0};
+    for (std::size_t m = 0; m < 3; ++m) {
+      value[m] = edge[m] + factor[m] * sums[m];
+      dlog[m] = (value[m] > 0 ? factor[m] * slopes[m] / value[m] : 0.0) - (m < 2 ? rest : 0.0);
+    }
+    return value;
+  };
+  if (a_ >= end_) log_shift = u - std::log1p(a_ * a_);
+  std::vector<double> basis(K);
+  profile.spline().Evaluate(u, basis.data());
+  const double mass = 1.0 + profile.mass_excess(), f_ggx = std::exp(-2.0 * u);
+  const double f = f_ggx * std::exp(profile.Excess(u)) / mass;
+  double dlog[3], unused[3];
+  const std::array<double, 3> value = tail(profile.tail_exponent(), dlog);
+  const std::array<double, 3> ggx = minus_ggx ? tail(2.0, unused) : std::array<double, 3>{};
+  for (std::size_t m = 0; m < 3; ++m) {
+    double* to = moments + m * stride;
+    to[0] += f * value[m] - f_ggx * ggx[m];
+    for (std::size_t k = 0; k < K; ++k) to[k + 1] += f * value[m] * (basis[k] + (k + 1 == K ? dlog[m] : 0.0));
+  }
+}
+
+ProfileGrid::ProfileGrid(std::shared_ptr<const ProfileSpline> spline) : spline_(std::move(spline)) {
+  const auto add = [&](double from, double to, std::size_t steps) {
+    const double x0 = std::asinh(from), x1 = std::asinh(to), step = (x1 - x0) / static_cast<double>(steps);
+    breaks_.push_back({x0, 1.0 / step, a_.size(), steps});
+    // A knot itself, not the sinh of its asinh: beside it P2 has a corner.
+    a_.push_back(from);
+    for (std::size_t j = 1; j < steps; ++j) a_.push_back(std::sinh(x0 + step * static_cast<double>(j)));
+  };
+  const std::vector<double>& knots = spline_->knots();
+  for (std::size_t i = 0; i + 1 < knots.size(); ++i) add(knots[i], knots[i + 1], kSteps);
+  double end = knots.back();
+  if (end < kFineEnd) {
+    add(end, kFineEnd, kSteps * static_cast<std::size_t>(std::ceil(std::log2(kFineEnd / end))));
+    end = kFineEnd;
+  }
+  const double last = std::ldexp(end, kDoublings);
+  add(end, last, kDoublings * kTailSteps);
+  a_.push_back(last);
+  const QuadratureRule rule = GaussLegendre(kTablePoints);
+  rules_.reserve(a_.size());
+  for (const double a : a_) rules_.emplace_back(*spline_, a, rule);
+}
+
+ProfileMasking::ProfileMasking(std::shared_ptr<const ProfileGrid> grid, Profile profile)
+    : grid_(std::move(grid)), profile_(std::move(profile)), stride_((profile_.q().size() + 2) / 2 * 2) {
+  table_.assign(grid_->a_.size() * 3 * stride_, 0.0);
+  for (std::size_t i = 0; i < grid_->a_.size(); ++i)
+    grid_->rules_[i].Apply(profile_, true, table_.data() + i * 3 * stride_, stride_);
+}
+
+double ProfileMasking::Difference(double a, double* derivative, double* by_q) const {
+  const std::size_t K = profile_.q().size();
+  const std::vector<double>& nodes = grid_->a_;
+  if (!(a < nodes.back())) {
+    std::vector<double> moments(3 * stride_, 0.0);
+    if (std::isfinite(a)) ProfileRule(profile_.spline(), a, {}).Apply(profile_, true, moments.data(), stride_);
+    if (derivative != nullptr) *derivative = -moments[stride_];
+    if (by_q != nullptr) std::copy_n(moments.data() + 1, K, by_q);
+    return moments[0];
+  }
+  const double position = std::log(a + std::sqrt(1.0 + a * a));  // asinh; its last bits do not matter
+  const std::vector<ProfileGrid::Break>& breaks = grid_->breaks_;
+  std::size_t b = 0;
+  while (b + 1 < breaks.size() && position >= breaks[b + 1].from) ++b;
+  const double steps = std::max(0.0, (position - breaks[b].from) * breaks[b].per_step);
+  const std::size_t k0 = breaks[b].first + std::min(static_cast<std::size_t>(steps), breaks[b].steps - 1);
+  const double h = nodes[k0 + 1] - nodes[k0], x = (a - nodes[k0]) / h, y = 1.0 - x;
+  // Quintic Hermite weights of value, -slope and curvature at both ends.
+  const double xx = x * x, yy = y * y, x3 = xx * x, y3 = yy * y;
+  const double w[6] = {y3 * (1.0 + 3.0 * x + 6.0 * xx), -h * x * y3 * (1.0 + 3.0 * x), 0.5 * h * h * xx * y3,
+                       x3 * (1.0 + 3.0 * y + 6.0 * yy), h * y * x3 * (1.0 + 3.0 * y),  0.5 * h * h * yy * x3};
+  const double* p = table_.data() + k0 * 3 * stride_;
+  if (derivative != nullptr) {
+    const double in_m = 30.0 * xx * yy / h;
+    const double d[6] = {-in_m, -yy * (1.0 + 2.0 * x - 15.0 * xx), 0.5 * h * x * yy * (2.0 - 5.0 * x),
+                         in_m,  -xx * (1.0 + 2.0 * y - 15.0 * yy), -0.5 * h * y * xx * (2.0 - 5.0 * y)};
+    double sum = 0;
+    for (std::size_t j = 0; j < 6; ++j) sum += d[j] * p[j * stride_];
+    *derivative = sum;
+  }
+  double value = 0;
+  for (std::size_t j = 0; j < 6; ++j) value += w[j] * p[j * stride_];
+  for (std::size_t k = 0; by_q != nullptr && k < K; ++k) {
+    double sum = 0;
+    for (std::size_t j = 0; j < 6; ++j) sum += w[j] * p[j * stride_ + 1 + k];
+    by_q[k] = sum;
+  }
+  return value;
+}
+
+}  // namespace lobefit
