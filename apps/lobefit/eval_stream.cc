@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "lobefit/base/csv_fields.h"
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 
@@ -68,34 +69,6 @@ class StreamLines {
   std::size_t begin_ = 0, number_ = 0;
 };
 
-// Fields between commas that stand outside quotes, as written.
-void SplitFields(std::string_view line, std::vector<std::string_view>* fields) {
-  fields->clear();
-  if (line.find('"') == std::string_view::npos) {
-    while (true) {
-      const std::size_t at = line.find(',');
-      fields->push_back(line.substr(0, at));
-      if (at == std::string_view::npos) return;
-      line.remove_prefix(at + 1);
-    }
-  }
-  bool quoted = false;
-  std::size_t begin = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') quoted = !quoted;
-    if (line[i] != ',' || quoted) continue;
-    fields->push_back(line.substr(begin, i - begin));
-    begin = i + 1;
-  }
-  fields->push_back(line.substr(begin));
-}
-
-std::string_view Unquoted(std::string_view field) {
-  field = Trim(field);
-  if (field.size() < 2 || field.front() != '"' || field.back() != '"') return field;
-  return Trim(field.substr(1, field.size() - 2));
-}
-
 // 17 significant digits, "nan", "inf", "-inf".
 void AppendNumber(double value, std::string* text) {
   if (!std::isfinite(value)) {
@@ -111,8 +84,9 @@ void AppendNumber(double value, std::string* text) {
 class Evaluation {
  public:
   Evaluation(const Quantity& quantity, std::string_view header, std::string* out) : quantity_(quantity) {
-    SplitFields(header, &fields_);
-    for (const std::string_view field : fields_) names_.emplace_back(Unquoted(field));
+    SplitQuoted(header, ',', &fields_);
+    std::string storage;
+    for (const std::string_view field : fields_) names_.emplace_back(Unquoted(field, &storage));
     for (const InputColumn& column : quantity.inputs) from_.push_back(PlaceOf(column.name, true));
     result_at_.assign(names_.size(), kNone);
     for (std::size_t k = 0; k < quantity.results.size(); ++k) {
@@ -133,7 +107,7 @@ class Evaluation {
   void Row(std::string_view text, std::size_t line, std::string* out) {
     ++row_;
     line_ = line;
-    SplitFields(text, &fields_);
+    SplitQuoted(text, ',', &fields_);
     if (fields_.size() != names_.size()) {
       throw InputError(
           fmt::format("standard input, line {} (row {}): {} fields, the header has {} columns; give every "
@@ -180,7 +154,8 @@ class Evaluation {
 
   double InputAt(std::size_t i) const {
     const InputColumn& column = quantity_.inputs[i];
-    const std::string_view field = Unquoted(fields_[from_[i]]);
+    std::string storage;
+    const std::string_view field = Unquoted(fields_[from_[i]], &storage);
     if (!column.words.empty()) {
       const auto word = std::find(column.words.begin(), column.words.end(), field);
       if (word != column.words.end()) return static_cast<double>(word - column.words.begin());

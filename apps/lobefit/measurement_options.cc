@@ -1,5 +1,9 @@
 #include "measurement_options.h"
 
+#include <algorithm>
+
+#include "lobefit/base/error.h"
+#include "lobefit/io/series.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/measurement/spectrum.h"
 
@@ -23,22 +27,57 @@ void MeasurementOptions::AddTo(CLI::App* app) {
   }
 }
 
-Measurement MeasurementOptions::Load(const std::string& path) const {
+std::filesystem::path OnlyFile(const std::vector<std::string>& files) {
+  return files.size() == 1 ? ParseFileSpec(files[0]).path : std::filesystem::path();
+}
+
+std::string SeriesName(const std::vector<std::string>& files) {
+  std::string name;
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    std::filesystem::path path = ParseFileSpec(files[f]).path;
+    if (!path.has_filename()) path = path.parent_path();  // a folder named with a slash at its end
+    const std::string stem = std::filesystem::is_directory(path) ? path.filename().string() : path.stem().string();
+    if (f == 0) name = stem;
+    const auto differ = std::mismatch(name.begin(), name.end(), stem.begin(), stem.end());
+    name.erase(differ.first, name.end());
+  }
+  while (name.size() > 1 && (name.back() == '_' || name.back() == '-' || name.back() == '.' || name.back() == ' ')) {
+    name.pop_back();
+  }
+  return name.empty() || name == "." ? "series" : name;
+}
+
+Measurement MeasurementOptions::Load(const std::vector<std::string>& files) const {
   ReadOptions options;
+  options.channels = channels_;
   for (std::size_t i = 0; i < words_.size(); ++i) {
     if (!words_[i].empty()) ReadOptionTable()[i].set(&options, words_[i]);
   }
-  Measurement measurement = ReadMeasurement(path, options);
-  Select(&measurement);
+  Measurement measurement = ReadSeries(files, options);
+  SelectDirections(&measurement);
+  return measurement;
+}
+
+Measurement MeasurementOptions::LoadStated(const std::vector<std::string>& files) const {
+  Measurement measurement = Load(files);
+  const auto kind = measurement.conventions.find("value-kind");
+  if (kind != measurement.conventions.end() && kind->second.ends_with("(not stated)")) {
+    throw InputError(measurement.source + ": does not say what its values are; state it with --value-kind, one of " +
+                     AllowedValueKinds());
+  }
   return measurement;
 }
 
 void MeasurementOptions::Select(Measurement* measurement) const {
+  SelectDirections(measurement);
+  if (!channels_.empty() && channels_ != "all") Apply(MakeChannelMap(channels_, measurement->channels), measurement);
+}
+
+void MeasurementOptions::SelectDirections(Measurement* measurement) const {
   Selection selection;
   if (!theta_i_.empty()) selection.theta_i = ParseAngleRange(theta_i_, "--theta-i");
   if (!phi_i_.empty()) selection.phi_i = ParseAngleRange(phi_i_, "--phi-i");
   Apply(selection, measurement);
-  if (!channels_.empty() && channels_ != "all") Apply(MakeChannelMap(channels_, measurement->channels), measurement);
 }
 
 }  // namespace lobefit

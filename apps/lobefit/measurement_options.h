@@ -1,6 +1,7 @@
 // The options by which a verb reads a measurement: what a file leaves open, and which part of it is used.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,16 +12,28 @@
 
 namespace lobefit {
 
+// What results of these files are called: the name of the one file without its ending, the folder's name, or what the
+// names of several have in common at their beginning.
+std::string SeriesName(const std::vector<std::string>& files);
+
+// The file that answers for directions between its samples, where one alone was named.
+std::filesystem::path OnlyFile(const std::vector<std::string>& files);
+
 class MeasurementOptions {
  public:
   // Adds the options; the object must outlive the parsing.
   void AddTo(CLI::App* app);
-  // Reads `path` and applies the selection. Throws UsageError and InputError.
-  Measurement Load(const std::string& path) const;
+  // Reads one file, or several and folders as one measurement (io/series.h), and applies the selection. Throws
+  // UsageError and InputError.
+  Measurement Load(const std::vector<std::string>& files) const;
+  // The same for verbs whose result stands or falls with what the values are: refuses a file that does not say it.
+  Measurement LoadStated(const std::vector<std::string>& files) const;
   // Keeps the chosen incident directions and channels.
   void Select(Measurement* measurement) const;
 
  private:
+  void SelectDirections(Measurement* measurement) const;
+
   std::string theta_i_, phi_i_, channels_;
   std::vector<std::string> words_;  // of the options of ReadOptionTable(), in its order; empty: not given
 };

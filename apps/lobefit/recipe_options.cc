@@ -8,8 +8,10 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/fit/automatic.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/math/vec.h"
+#include "lobefit/recipe/free_scale.h"
 
 namespace lobefit {
 namespace {
@@ -67,6 +69,12 @@ void RecipeOverrides::AddTo(CLI::App* app, const std::string& group) {
                   "overrides the recipe: limit on both polar angles, degrees (default 80)")
       ->check(CLI::Range(0.1, 90.0))
       ->group(group);
+  app->add_option(
+         "--scale", scale_,
+         "calibrated (default): values are f_r in 1/sr; free: their scale is not known, so the shape is fitted "
+         "without the bounds that calibrated values have")
+      ->check(CLI::IsMember({"calibrated", "free"}))
+      ->group(group);
 }
 
 void RecipeOverrides::Apply(Recipe* recipe) const {
@@ -74,6 +82,16 @@ void RecipeOverrides::Apply(Recipe* recipe) const {
   recipe->metric_given = recipe->metric_given || !metric_.empty();
   Override(weighting_, "--weighting", WeightingChoices(), &recipe->weighting);
   if (theta_max_deg_ > 0) recipe->theta_max = DegreesToRadians(theta_max_deg_);
+  if (scale_ == "free") *recipe = WithFreeScale(*recipe);
+}
+
+void RecipeOverrides::Remark(Measurement* measurement) const {
+  if (scale_ != "free") return;
+  measurement->conventions["scale"] = "free (option)";
+  measurement->remarks.emplace_back(
+      "the scale of the values is not known (--scale free): the shape is fitted, amplitudes stand relative to each "
+      "other, and "
+      "no reflectance or albedo follows from them");
 }
 
 void RecipeOptions::AddTo(CLI::App* app) {
@@ -85,9 +103,8 @@ void RecipeOptions::AddTo(CLI::App* app) {
 }
 
 Recipe RecipeOptions::Choose(const Measurement& measurement) const {
-  const MeasurementTraits traits = TraitsOf(measurement);
-  Recipe recipe = recipe_ == "auto" ? AutomaticRecipe(traits) : LoadRecipe(recipe_);
-  recipe.plane_azimuth = traits.plane_azimuth;
+  Recipe recipe = recipe_ == "auto" ? ChooseAutomatically(measurement) : LoadRecipe(recipe_);
+  recipe.plane_azimuth = TraitsOf(measurement).plane_azimuth;
   overrides_.Apply(&recipe);
   return recipe;
 }

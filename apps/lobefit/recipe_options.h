@@ -17,9 +17,12 @@ class RecipeOverrides {
   void AddTo(CLI::App* app, const std::string& group);
   // Throws UsageError.
   void Apply(Recipe* recipe) const;
+  // Says in the measurement, and so in every result, what the values are taken for.
+  void Remark(Measurement* measurement) const;
+  bool HasFreeScale() const { return scale_ == "free"; }
 
  private:
-  std::string metric_, weighting_;
+  std::string metric_, weighting_, scale_;
   double theta_max_deg_ = 0;
 };
 
@@ -29,6 +32,7 @@ class RecipeOptions {
   bool IsAutomatic() const { return recipe_ == "auto"; }
   // Throws UsageError and InputError.
   Recipe Choose(const Measurement& measurement) const;
+  const RecipeOverrides& overrides() const { return overrides_; }
 
  private:
   std::string recipe_ = "auto";

@@ -95,7 +95,11 @@ std::string Summary(const Material& material) {
     AppendParameters(material, &text);
   }
   text += "Root mean square error:";
-  for (const MetricError& error : material.errors) text += fmt::format("  {} {:.3g}", error.metric, error.rms);
+  for (const MetricError& error : material.errors) {
+    // A metric may weigh no sample at all: those that weigh by sin(theta_i) at normal incidence.
+    text += std::isnan(error.rms) ? fmt::format("  {} -", error.metric)
+                                  : fmt::format("  {} {:.3g}", error.metric, error.rms);
+  }
   text += '\n';
   if (material.minima.size() > 1) {
     text += fmt::format("{} distinct minima found, the next one costs {:.3g} % more\n", material.minima.size(),

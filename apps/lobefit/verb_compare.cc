@@ -30,7 +30,8 @@ struct CompareVerb {
   MeasurementOptions measurement;
   RecipeOverrides overrides;
   CompareOptions compare;
-  std::string file, out = ".", name, recipes;
+  std::vector<std::string> files;
+  std::string out = ".", name, recipes;
   std::vector<std::string> with;
   bool no_report = false;
 };
@@ -139,8 +140,9 @@ int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<GivenMaterial> given;
   for (const std::string& path : verb.with) given.push_back(LoadGiven(path));
-  Measurement measurement = verb.measurement.Load(verb.file);
+  Measurement measurement = verb.measurement.LoadStated(verb.files);
   const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  verb.overrides.Remark(&measurement);
   CompareOptions options = verb.compare;
   options.fit.threads = common.Threads();
   Comparison comparison = Compare(ChooseRecipes(verb, measurement), given, options, &measurement);
@@ -149,7 +151,7 @@ int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   material.command = common.command;
   material.timings_s["read"] = read_s;
   material.recipe_reason = comparison.reason;
-  const std::string name = verb.name.empty() ? std::filesystem::path(verb.file).stem().string() : verb.name;
+  const std::string name = verb.name.empty() ? SeriesName(verb.files) : verb.name;
   const std::filesystem::path document = folder / (name + ".material.json");
   // The document first: it is kept even where drawing fails.
   WriteMaterial(material, document);
@@ -174,7 +176,10 @@ int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
 std::function<int()> SetUpCompare(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<CompareVerb>();
   const std::string group = "What to compare";
-  app->add_option("FILE", verb->file, "measurement file")->required();
+  app->add_option(
+         "FILE", verb->files,
+         "measurement files: one, or several and folders as one measurement; FILE:theta_i=30 states what a file lacks")
+      ->required();
   app->add_option("--recipes", verb->recipes,
                   "recipes by name or .toml file, with commas between (default: what suits the measurement)")
       ->group(group);

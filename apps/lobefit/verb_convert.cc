@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "lobefit/base/error.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/write.h"
 
@@ -16,7 +17,8 @@ namespace {
 
 struct ConvertVerb {
   MeasurementOptions measurement;
-  std::string in, out, format;
+  std::vector<std::string> files;  // inputs, then the output
+  std::string format;
 };
 
 std::string FormatNames() {
@@ -32,27 +34,38 @@ std::string ToJson(const Conversion& conversion) {
       {"files", files},
       {"losses", conversion.losses},
       {"compared", conversion.difference.compared},
-      {"relative_difference", {{"median", conversion.difference.median}, {"maximum", conversion.difference.maximum}}}};
+      {"not_compared", conversion.not_compared},
+      {"relative_difference", conversion.difference.compared == 0
+                                  ? nlohmann::ordered_json()
+                                  : nlohmann::ordered_json{{"median", conversion.difference.median},
+                                                           {"maximum", conversion.difference.maximum}}}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
   const std::optional<std::string> name = verb.format.empty() ? std::nullopt : std::optional<std::string>(verb.format);
-  const WriteFormat& format = FindWriteFormat(name, verb.out);
-  const Measurement measurement = verb.measurement.Load(verb.in);
+  if (verb.files.size() < 2) throw UsageError("convert needs a file to read and one to write");
+  const std::vector<std::string> in(verb.files.begin(), verb.files.end() - 1);
+  const std::string& out = verb.files.back();
+  const WriteFormat& format = FindWriteFormat(name, out);
+  const Measurement measurement = verb.measurement.Load(in);
   WriteSource source;
   source.measurement = &measurement;
   source.channels = measurement.channels;
   source.isotropic = measurement.isotropic;
   // A file that defines its own interpolation is asked by it, unless its channels were chosen or mixed.
-  if (measurement.conventions.count("channels") == 0) source.brdf = TabulatedBrdf(verb.in, measurement);
-  const Conversion conversion = Convert(source, format, {}, verb.out);
+  if (measurement.conventions.count("channels") == 0) source.brdf = TabulatedBrdf(OnlyFile(in), measurement);
+  const Conversion conversion = Convert(source, format, {}, out);
   if (common.json) {
     fmt::print("{}\n", ToJson(conversion));
     return 0;
   }
   for (const std::filesystem::path& file : conversion.files) fmt::print("{}: {}\n", file.string(), format.description);
   for (const std::string& loss : conversion.losses) fmt::print("Lost: {}\n", loss);
+  if (conversion.difference.compared == 0) {
+    fmt::print("Not compared: {}\n", conversion.not_compared);
+    return 0;
+  }
   fmt::print("Relative difference at {} values: median {:.2g}, largest {:.2g}\n", conversion.difference.compared,
              conversion.difference.median, conversion.difference.maximum);
   return 0;
@@ -62,8 +75,10 @@ int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
 
 std::function<int()> SetUpConvert(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<ConvertVerb>();
-  app->add_option("IN", verb->in, "measurement file")->required();
-  app->add_option("OUT", verb->out, "file to write; its ending chooses the format")->required();
+  app->add_option("FILES", verb->files,
+                  "IN [IN ...] OUT: measurement files or folders, read as one measurement, and last the file to write, "
+                  "whose ending chooses the format")
+      ->required();
   app->add_option("--to", verb->format, "format to write: " + FormatNames());
   verb->measurement.AddTo(app);
   return [=] { return RunConvert(*verb, *common); };

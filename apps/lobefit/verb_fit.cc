@@ -17,6 +17,7 @@
 #include "lobefit/base/text.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/sel/sampling.h"
+#include "lobefit/io/series.h"
 #include "lobefit/material/json.h"
 #include "lobefit/report/report.h"
 
@@ -27,7 +28,8 @@ struct FitVerb {
   MeasurementOptions measurement;
   RecipeOptions recipe;
   FitOptions fit;
-  std::string file, out = ".", name, format = "png,html";
+  std::vector<std::string> files;
+  std::string out = ".", name, format = "png,html";
   bool no_report = false;
 };
 
@@ -55,9 +57,9 @@ int Judge(const Material& material) {
 
 // What a material gives on hemispheres, in place of a measurement.
 Measurement Sampled(const FitVerb& verb) {
-  Measurement measurement = SampleForSel(ReadModelMaterial(verb.file));
-  measurement.source = std::filesystem::path(verb.file).filename().string();
-  measurement.sha256 = Sha256Hex(MappedFile(verb.file).bytes());
+  Measurement measurement = SampleForSel(ReadModelMaterial(verb.files[0]));
+  measurement.source = std::filesystem::path(verb.files[0]).filename().string();
+  measurement.sha256 = Sha256Hex(MappedFile(verb.files[0]).bytes());
   verb.measurement.Select(&measurement);
   return measurement;
 }
@@ -67,19 +69,20 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   MakeFolder(folder);
 
   auto start = std::chrono::steady_clock::now();
-  const bool of_model = LooksLikeMaterial(verb.file);
-  Measurement measurement = of_model ? Sampled(verb) : verb.measurement.Load(verb.file);
+  const bool of_model = verb.files.size() == 1 && LooksLikeMaterial(ParseFileSpec(verb.files[0]).path);
+  Measurement measurement = of_model ? Sampled(verb) : verb.measurement.LoadStated(verb.files);
   const double read_s = Seconds(start);
   FitOptions options = verb.fit;
   options.threads = common.Threads();
+  verb.recipe.overrides().Remark(&measurement);
   const Recipe recipe = verb.recipe.Choose(measurement);
   if (of_model && !recipe.sel) {
     throw UsageError(fmt::format(
         "{}: is a material, to which only lobes can be fitted; add --recipe sel, or give a measurement file",
-        Excerpt(verb.file, 200)));
+        Excerpt(verb.files[0], 200)));
   }
   Material material = FitRecipe(recipe, options, &measurement);
-  if (verb.recipe.IsAutomatic()) {
+  if (verb.recipe.IsAutomatic() && !verb.recipe.overrides().HasFreeScale()) {
     if (const std::optional<Recipe> alternative = AutomaticAlternative(recipe, material))
       material = Fit(*alternative, options, &measurement);
   }
@@ -87,7 +90,7 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   material.timings_s["read"] = read_s;
 
   // A table of lobes must not overwrite the material that it was sampled from.
-  const std::string stem = std::filesystem::path(verb.file).stem().string();
+  const std::string stem = SeriesName(verb.files);
   const std::string name = !verb.name.empty() ? verb.name : of_model ? stem.substr(0, stem.find('.')) + ".sel" : stem;
   const std::filesystem::path document = folder / (name + ".material.json"), picture = folder / (name + ".report.png");
   const std::vector<std::string> formats = ParseReportFormats(verb.format);
@@ -116,7 +119,11 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
 
 std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<FitVerb>();
-  app->add_option("FILE", verb->file, "measurement file; for recipe sel also a *.material.json")->required();
+  app->add_option(
+         "FILE", verb->files,
+         "measurement files: one, or several and folders as one measurement; FILE:theta_i=30 states what a file "
+         "lacks; for recipe sel also a *.material.json")
+      ->required();
   app->add_option("--out", verb->out, "folder of the results (default: the current one)");
   app->add_option("--name", verb->name, "NAME of the results (default: the file's name without its ending)");
   app->add_option("--format", verb->format,

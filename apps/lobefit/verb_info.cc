@@ -161,8 +161,11 @@ std::string ToText(const Measurement& measurement, const Description& descriptio
 
 std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
   auto options = std::make_shared<MeasurementOptions>();
-  auto file = std::make_shared<std::string>();
-  app->add_option("FILE", *file, "measurement file")->required();
+  auto files = std::make_shared<std::vector<std::string>>();
+  app->add_option(
+         "FILE", *files,
+         "measurement files: one, or several and folders as one measurement; FILE:theta_i=30 states what a file lacks")
+      ->required();
   auto statistics = std::make_shared<bool>(false);
   app->add_flag("--statistics", *statistics,
                 "albedo and reciprocity for a large table too (small ones show them anyway)");
@@ -170,11 +173,12 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
   app->add_option("--png", *picture, "also write where the samples lie over the hemisphere to this picture");
   options->AddTo(app);
   return [=] {
-    const Measurement measurement = options->Load(*file);
+    const Measurement measurement = options->Load(*files);
     Description description = DescribeRanges(measurement);
     if (*statistics || measurement.samples.size() <= kStatisticsByDefault) {
-      description.statistics = Describe(
-          measurement, measurement.conventions.count("channels") == 0 ? TabulatedBrdf(*file, measurement) : nullptr);
+      description.statistics = Describe(measurement, measurement.conventions.count("channels") == 0
+                                                         ? TabulatedBrdf(OnlyFile(*files), measurement)
+                                                         : nullptr);
     }
     if (!picture->empty()) WriteCoveragePng(measurement, *picture);
     fmt::print("{}\n", common->json ? ToJson(measurement, description) : ToText(measurement, description));

@@ -19,7 +19,8 @@ namespace {
 
 struct ReportVerb {
   MeasurementOptions measurement;
-  std::string material, file, out, format = "png";
+  std::vector<std::string> files;
+  std::string material, out, format = "png";
   double scale = 2;
 };
 
@@ -43,7 +44,7 @@ std::filesystem::path PictureOf(const ReportVerb& verb) {
 
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   const Material material = ReadMaterial(verb.material);
-  Measurement measurement = verb.measurement.Load(verb.file);
+  Measurement measurement = verb.measurement.Load(verb.files);
   // The picture shows what was fitted.
   Selection limit;
   limit.theta_max = DegreesToRadians(material.theta_max_deg);
@@ -60,7 +61,8 @@ int RunReport(const ReportVerb& verb, const CommonOptions& common) {
 std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<ReportVerb>();
   app->add_option("MATERIAL", verb->material, "a *.material.json")->required();
-  app->add_option("MEASUREMENT", verb->file, "the measurement file that it was fitted to")->required();
+  app->add_option("MEASUREMENT", verb->files, "the measurement that it was fitted to: one file, or several and folders")
+      ->required();
   app->add_option("--out", verb->out,
                   "the picture, or the folder for it (default: NAME.report.png beside the material)");
   app->add_option("--format", verb->format,

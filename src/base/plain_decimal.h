@@ -46,7 +46,7 @@ inline std::size_t TakeDigits(std::string_view text, std::size_t most, std::size
 // The number with which `text` begins, where it is written plainly ("-12.25": digits, perhaps a point and digits) and
 // short enough that double arithmetic gives the very value of ParseDouble; its length goes to `length`. Else nothing:
 // then ParseDouble decides.
-inline std::optional<double> ParsePlainDecimal(std::string_view text, std::size_t* length) {
+inline std::optional<double> ParsePlainDecimal(std::string_view text, std::size_t* length, char decimal_mark = '.') {
   // A whole number below 2^53 and a power of ten up to 10^22 are doubles, so that one division rounds once.
   constexpr std::size_t kMostDigits = 15;
   static constexpr std::array<double, kMostDigits + 1> kPowers = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -58,7 +58,7 @@ inline std::optional<double> ParsePlainDecimal(std::string_view text, std::size_
   // One more than allowed shows that there are too many.
   std::size_t count = internal::TakeDigits(text, kMostDigits + 1, &at, &digits), decimals = 0;
   if (count == 0 || count > kMostDigits) return std::nullopt;
-  if (at < text.size() && text[at] == '.') {
+  if (at < text.size() && text[at] == decimal_mark) {
     ++at;
     decimals = internal::TakeDigits(text, kMostDigits + 1 - count, &at, &digits);
     count += decimals;

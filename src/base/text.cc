@@ -153,7 +153,7 @@ bool LineReader::Next(std::string_view* line) {
   const bool has_newline = end != std::string_view::npos;
   if (!has_newline) end = text_.size();
   std::size_t length = end - offset_;
-  if (length > 0 && text_[offset_ + length - 1] == '\r') --length;
+  while (length > 0 && text_[offset_ + length - 1] == '\r') --length;
   *line = text_.substr(offset_, length);
   offset_ = has_newline ? end + 1 : end;
   ++line_number_;

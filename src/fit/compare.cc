@@ -209,6 +209,18 @@ void SetExcess(const JudgedModel& best, JudgedModel* model) {
   model->excess_error = std::sqrt(square / (n - 1) / n);
 }
 
+// Lobes of each incident direction stand beside the models to show what no model describes: said where they predict
+// better than the model that is recommended.
+std::string LobesBelow(const std::vector<JudgedModel>& models, double held_out) {
+  for (const JudgedModel& model : models) {
+    if (!model.fitted || !model.material.sel || !(model.held_out < 0.95 * held_out)) continue;
+    return fmt::format(
+        "; the lobes of {} have {:.3g}, so {:.0f} % of the model's error is structure that no model here fits",
+        model.name, model.held_out, 100 * (1 - model.held_out / held_out));
+  }
+  return "";
+}
+
 void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Comparison* comparison) {
   std::vector<JudgedModel>& models = comparison->models;
   const std::size_t best = Least(eligible, [&](std::size_t m) { return MeanOverFolds(models[m]); });
@@ -235,18 +247,23 @@ void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Co
   }
   std::size_t fitted = 0;
   for (const JudgedModel& any : models) fitted += any.fitted && !any.material.sel ? 1 : 0;
-  comparison->reason =
-      fmt::format("{} has the least error on held-out incident directions, {:.3g}{}", model.name, model.held_out,
-                  eligible.size() < fitted ? ", of those that converged and are determined" : "");
+  const std::string lobes = LobesBelow(models, model.held_out);
+  comparison->reason = fmt::format("{}{} has the least error on held-out incident directions, {:.3g}{}",
+                                   lobes.empty() ? "" : "of the models, ", model.name, model.held_out,
+                                   eligible.size() < fitted ? ", of those that converged and are determined" : "");
   std::vector<std::size_t> simpler;
   for (const std::size_t m : eligible) {
     if (models[m].free_parameters < model.free_parameters) simpler.push_back(m);
   }
-  if (simpler.empty()) return;
+  if (simpler.empty()) {
+    comparison->reason += lobes;
+    return;
+  }
   const JudgedModel& next = models[Least(simpler, [&](std::size_t m) { return MeanOverFolds(models[m]); })];
   comparison->reason +=
       fmt::format(", and no simpler recipe comes within one standard error of it (the nearest, {}: {:.3g})", next.name,
-                  next.held_out);
+                  next.held_out) +
+      lobes;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "lobefit/io/alta/reader.h"
 #include "lobefit/io/astm/reader.h"
+#include "lobefit/io/bird/reader.h"
 #include "lobefit/io/bsdf_xml/reader.h"
 #include "lobefit/io/cornell/reader.h"
 #include "lobefit/io/csv/reader.h"
@@ -12,6 +13,7 @@
 #include "lobefit/io/merl/reader.h"
 #include "lobefit/io/mit/reader.h"
 #include "lobefit/io/mountain/reader.h"
+#include "lobefit/io/openmaterial/reader.h"
 #include "lobefit/io/rgl/reader.h"
 #include "lobefit/io/utia/reader.h"
 #include "lobefit/io/zemax/reader.h"
@@ -34,6 +36,8 @@ const std::vector<Format>& Formats() {
       {"alta", "ALTA text or binary", IsAlta, ReadAlta},
       {"mountain", "pab-opto Mountain text", IsMountain, ReadMountain},
       {"cornell", "Cornell spectral text", IsCornell, ReadCornell},
+      {"bird", "EMPIR BiRD/BxDiff universal BRDF file, JSON", IsBird, ReadBird},
+      {"openmaterial", "ASAM OpenMATERIAL 3D BRDF table, JSON", IsOpenMaterial, ReadOpenMaterial},
       {"csv", "goniometer rows with column names, comma, semicolon or tab separated", IsCsv, ReadCsv},
   };
   return formats;

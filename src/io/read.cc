@@ -1,5 +1,6 @@
 #include "lobefit/io/read.h"
 
+#include <cmath>
 #include <cstdio>
 #include <future>
 #include <utility>
@@ -7,8 +8,15 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/no_value.h"
 #include "lobefit/io/formats.h"
+#include "lobefit/io/text/decoded_file.h"
+#include "lobefit/io/wrong_kind.h"
+#include "lobefit/measurement/exclusion.h"
+#include "lobefit/measurement/incomplete.h"
 #include "lobefit/measurement/noise.h"
+#include "lobefit/measurement/plausibility.h"
+#include "lobefit/measurement/spectrum.h"
 
 namespace lobefit {
 namespace {
@@ -40,9 +48,72 @@ void TreatNoise(const ReadOptions& options, Measurement* measurement) {
       " samples are below three times that. --noise-floor " + floor + " lets them weigh less");
 }
 
+void RequireSamples(const std::string& name, const Measurement& measurement) {
+  if (measurement.samples.size() > 0) return;
+  std::vector<std::string> reasons;
+  for (int i = 0; i < kSetAsideReasons; ++i) {
+    const auto reason = static_cast<SetAsideReason>(i);
+    const std::size_t count = measurement.set_aside[reason];
+    if (count > 0) reasons.push_back(std::to_string(count) + " " + std::string(Words(reason)));
+  }
+  const bool channels = measurement.set_aside[SetAsideReason::kHole] > 0 && measurement.channels.size() > 1;
+  throw InputError(name + ": holds no usable sample" +
+                   (reasons.empty() ? std::string(": it has no data rows") : ": " + Join(reasons)) +
+                   (channels ? "; choose channels that were measured with --channels"
+                             : "; check that the right file was named and that its units are stated"));
+}
+
+// Keys behind the name of a file whose format has none of its own: how the sample was turned.
+void TakeKeys(const std::vector<std::string>& keys, Measurement* measurement) {
+  for (const std::string& key : keys) {
+    const std::size_t at = key.find('=');
+    const std::string name = ToLower(Trim(std::string_view(key).substr(0, at)));
+    std::string_view word = at == std::string::npos ? std::string_view() : Trim(std::string_view(key).substr(at + 1));
+    if (word.ends_with("deg")) word.remove_suffix(3);
+    const std::optional<double> degrees = ParseDouble(word);
+    if ((name != "sample-rotation" && name != "sample_rotation") || !degrees || !std::isfinite(*degrees)) {
+      throw UsageError(measurement->source + ":" + Excerpt(key) + ": of a " + measurement->format +
+                       " file only sample-rotation=DEGREES can be stated behind its name");
+    }
+    // The sample turned counter-clockwise sees both directions turned clockwise.
+    Samples& samples = measurement->samples;
+    const double c = std::cos(DegreesToRadians(*degrees)), s = std::sin(DegreesToRadians(*degrees));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Vec3 wi = samples.wi(i), wo = samples.wo(i);
+      samples.wi_x[i] = c * wi.x + s * wi.y;
+      samples.wi_y[i] = c * wi.y - s * wi.x;
+      samples.wo_x[i] = c * wo.x + s * wo.y;
+      samples.wo_y[i] = c * wo.y - s * wo.x;
+    }
+    measurement->conventions["sample-rotation"] = FormatDouble(*degrees) + " deg (behind the file's name)";
+  }
+}
+
+// Numbers that stand for no value, of formats whose reader does not know the option.
+void MarkNoValues(const std::string& list, Measurement* measurement) {
+  if (list.empty()) return;
+  const NoValues marks(list);
+  Samples& samples = measurement->samples;
+  for (std::vector<double>& values : samples.values) {
+    for (double& value : values) {
+      if (marks.Holds(value)) value = std::nan("");
+    }
+  }
+  std::vector<std::uint8_t> keep(samples.size(), 0);
+  std::size_t holes = samples.size();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (const std::vector<double>& values : samples.values) keep[i] |= std::isnan(values[i]) ? 0 : 1;
+    holes -= keep[i];
+  }
+  measurement->set_aside.Add(SetAsideReason::kHole, holes);
+  samples.Keep(keep);
+}
+
 }  // namespace
 
 const Format& RecogniseFormat(const InputFile& file) {
+  const std::string wrong_kind = DescribeWrongKind(file.bytes);
+  if (!wrong_kind.empty()) throw InputError(file.path.string() + ": " + wrong_kind);
   if (file.bytes.empty()) {
     throw InputError(file.path.string() +
                      ": is empty (0 bytes); name a file that holds a measurement. Known formats: " + KnownFormats());
@@ -55,29 +126,50 @@ const Format& RecogniseFormat(const InputFile& file) {
                    std::to_string(file.bytes.size()) + " bytes. Known formats: " + KnownFormats());
 }
 
-Measurement ReadMeasurement(const std::filesystem::path& path, const ReadOptions& options) {
-  const MappedFile mapped(path);
-  const InputFile file = {path, mapped.bytes()};
+ReadOptions WithKeys(ReadOptions options, const std::vector<std::string>& keys) {
+  options.keys = keys;
+  return options;
+}
+
+Measurement ReadPart(const std::filesystem::path& path, const ReadOptions& options) {
+  const DecodedFile decoded(path);
+  const InputFile file = {path, decoded.bytes()};
   const Format& format = RecogniseFormat(file);
-  const auto policy = file.bytes.size() >= kHashAsideBytes ? std::launch::async : std::launch::deferred;
-  std::future<std::string> digest = std::async(policy, [&] { return Sha256Hex(file.bytes); });
+  const auto policy = decoded.stored().size() >= kHashAsideBytes ? std::launch::async : std::launch::deferred;
+  std::future<std::string> digest = std::async(policy, [&] { return Sha256Hex(decoded.stored()); });
   Measurement measurement = format.read(file, options);
   measurement.format = format.name;
   measurement.source = path.filename().string();
   measurement.sha256 = digest.get();
-  if (measurement.samples.size() == 0) {
-    std::vector<std::string> reasons;
-    for (int i = 0; i < kSetAsideReasons; ++i) {
-      const auto reason = static_cast<SetAsideReason>(i);
-      const std::size_t count = measurement.set_aside[reason];
-      if (count > 0) reasons.push_back(std::to_string(count) + " " + std::string(Words(reason)));
-    }
-    throw InputError(path.string() + ": holds no usable sample" +
-                     (reasons.empty() ? std::string(": it has no data rows") : ": " + Join(reasons)) +
-                     "; check that the right file was named and that its units are stated");
+  measurement.remarks.insert(measurement.remarks.begin(), decoded.remarks().begin(), decoded.remarks().end());
+  if (measurement.format != "csv") {
+    TakeKeys(options.keys, &measurement);
+    MarkNoValues(options.no_value, &measurement);
+  }
+  RequireSamples(path.string(), measurement);
+  return measurement;
+}
+
+Measurement FinishReading(Measurement measurement, const ReadOptions& options) {
+  if (!options.channels.empty() && options.channels != "all")
+    Apply(MakeChannelMap(options.channels, measurement.channels), &measurement);
+  DropIncomplete(&measurement);
+  RequireSamples(measurement.source, measurement);
+  const auto stated = measurement.conventions.find("exclude");
+  const std::string exclude = !options.exclude.empty()                  ? options.exclude
+                              : stated != measurement.conventions.end() ? stated->second
+                                                                        : "";
+  if (!exclude.empty()) {
+    Apply(ParseExclusions(exclude), &measurement);
+    measurement.conventions["exclude"] = exclude + (options.exclude.empty() ? " (header)" : " (option)");
   }
   TreatNoise(options, &measurement);
+  for (std::string& remark : FindImplausible(measurement)) measurement.remarks.push_back(std::move(remark));
   return measurement;
+}
+
+Measurement ReadMeasurement(const std::filesystem::path& path, const ReadOptions& options) {
+  return FinishReading(ReadPart(path, options), options);
 }
 
 }  // namespace lobefit

@@ -10,11 +10,14 @@
 #include "lobefit/base/text.h"
 #include "lobefit/io/alta/writer.h"
 #include "lobefit/io/bsdf_xml/writer.h"
+#include "lobefit/io/compare_written.h"
 #include "lobefit/io/csv/writer.h"
 #include "lobefit/io/exr/writer.h"
 #include "lobefit/io/merl/writer.h"
 #include "lobefit/io/mountain/writer.h"
 #include "lobefit/io/rgl/brdf.h"
+#include "lobefit/io/series.h"
+#include "lobefit/io/text/decoded_file.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/synthesis/synthesis.h"
 
@@ -160,7 +163,7 @@ void AddWords(const WriteSource& source, const WriteFormat& format, const WriteO
     conversion->losses.push_back(source.brdf ? "resampled to the grid of the format"
                                              : "samples interpolated to the grid of the format");
   }
-  if (source.measurement != nullptr && !source.measurement->samples.weight.empty()) {
+  if (source.measurement != nullptr && !source.measurement->samples.weight.empty() && name != "csv") {
     conversion->losses.emplace_back("the weights of the samples are not written");
   }
   if (source.measurement != nullptr && source.measurement->set_aside.total() > 0) {
@@ -177,25 +180,11 @@ void AddWords(const WriteSource& source, const WriteFormat& format, const WriteO
                                         : "only one phi_d, and no dependence on the azimuth of the sample");
   }
   if (name == "mountain" && source.channels.names == std::vector<std::string>{"R", "G", "B"}) {
-    conversion->losses.emplace_back("R G B became CIE X Y Z (sRGB primaries); the difference below is that of X, Y, Z");
+    conversion->losses.emplace_back("R G B became CIE X Y Z (sRGB primaries)");
   }
   if (name == "tensor-tree" && source.channels.names == std::vector<std::string>{"R", "G", "B"}) {
     conversion->losses.emplace_back("R G B became CIE Y, u', v' (sRGB primaries)");
   }
-}
-
-// A measurement whose channels are those that a reader of the target finds: X Y Z for R G B.
-Measurement ToXyz(const Measurement& rgb) {
-  constexpr double kMatrix[3][3] = {{0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505}};
-  Measurement xyz = rgb;
-  xyz.channels.names = {"X", "Y", "Z"};
-  for (std::size_t i = 0; i < rgb.samples.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      xyz.samples.values[c][i] = kMatrix[c][0] * rgb.samples.values[0][i] + kMatrix[c][1] * rgb.samples.values[1][i] +
-                                 kMatrix[c][2] * rgb.samples.values[2][i];
-    }
-  }
-  return xyz;
 }
 
 }  // namespace
@@ -227,7 +216,7 @@ const WriteFormat& FindWriteFormat(const std::optional<std::string>& name, const
 
 BrdfFunction TabulatedBrdf(const std::filesystem::path& path, const Measurement& measurement) {
   if (measurement.format != "rgl") return nullptr;
-  const MappedFile file(path);
+  const DecodedFile file(path);
   const auto brdf = std::make_shared<const RglBrdf>(path, file.bytes());
   return [brdf](const Vec3& wi, const Vec3& wo, double* values) { brdf->Evaluate(wi, wo, values); };
 }
@@ -240,26 +229,31 @@ Conversion Convert(const WriteSource& source, const WriteFormat& format, const W
   if (format.is_grid && !source.brdf) with_function.brdf = Interpolate(*source.measurement);
   conversion.files = format.write(with_function, options, path);
   AddWords(source, format, options, &conversion);
-  if (conversion.files.size() != 1) return conversion;
 
   ReadOptions read;
   read.merl_cell = options.merl_cell;
-  const Measurement back = ReadMeasurement(conversion.files[0], read);
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : conversion.files) names.push_back(file.string());
+  const Measurement back = ReadSeries(names, read);
   const Measurement original = source.measurement != nullptr ? *source.measurement : Tabulated(source);
-  const bool one_slice = back.format == "exr" && options.exr.axes != ExrAxes::kUtia;
-  const bool to_xyz =
-      back.channels.names == std::vector<std::string>{"X", "Y", "Z"} && original.channels.names[0] == "R";
-  if (one_slice) {
+  if (back.format == "exr" && options.exr.axes != ExrAxes::kUtia) {
     // Only what the image holds can be compared.
     conversion.difference = CompareWith(back, FunctionOf(with_function));
-  } else if (back.channels.size() == original.channels.size()) {
-    const BrdfFunction tabulated = TabulatedBrdf(conversion.files[0], back);
-    conversion.difference =
-        CompareWith(to_xyz ? ToXyz(original) : original, tabulated ? tabulated : Interpolate(back), 20000);
+  } else {
+    const BrdfFunction tabulated = names.size() == 1 ? TabulatedBrdf(conversion.files[0], back) : nullptr;
+    const WrittenDifference written = CompareWritten(original, back, format.is_grid, tabulated);
+    conversion.difference = written.difference;
+    conversion.not_compared = written.reason;
   }
-  conversion.losses.push_back("relative difference: median " + Percent(conversion.difference.median) +
-                              ", 90 % of the samples within " + Percent(conversion.difference.percentile_90) +
-                              ", at most " + Percent(conversion.difference.maximum));
+  if (conversion.difference.compared == 0) {
+    if (conversion.not_compared.empty())
+      conversion.not_compared = "no value of the written file stands for one of the measurement";
+    conversion.losses.push_back("how much cannot be said: " + conversion.not_compared);
+  } else if (conversion.difference.maximum > 0) {
+    conversion.losses.push_back("relative difference: median " + Percent(conversion.difference.median) +
+                                ", 90 % of the samples within " + Percent(conversion.difference.percentile_90) +
+                                ", at most " + Percent(conversion.difference.maximum));
+  }
   return conversion;
 }
 

@@ -55,12 +55,12 @@ const WriteFormat& FindWriteFormat(const std::optional<std::string>& name, const
 BrdfFunction TabulatedBrdf(const std::filesystem::path& path, const Measurement& measurement);
 
 // Writes a file into another format and reads it back. What was lost: words (what the target cannot hold, samples that
-// were set aside when reading back) and numbers (the target's values, interpolated, against the source's at the
-// source's samples).
+// were set aside when reading back) and numbers (the target's values against the source's, see compare_written.h).
 struct Conversion {
   std::vector<std::filesystem::path> files;
   std::vector<std::string> losses;
-  Difference difference;
+  Difference difference;     // compared is 0 where nothing could be compared, and
+  std::string not_compared;  // says why
 };
 Conversion Convert(const WriteSource& source, const WriteFormat& format, const WriteOptions& options,
                    const std::filesystem::path& path);

@@ -78,9 +78,9 @@ MeasurementBuilder::MeasurementBuilder(Channels channels) {
 }
 
 bool MeasurementBuilder::Add(const Vec3& wi, const Vec3& wo, const double* values, std::uint32_t origin_index) {
-  bool finite = IsFinite(wi) && IsFinite(wo);
-  for (std::size_t c = 0; c < measurement_.channels.size(); ++c) finite = finite && std::isfinite(values[c]);
-  if (!finite) {
+  bool any = false;
+  for (std::size_t c = 0; c < measurement_.channels.size(); ++c) any = any || std::isfinite(values[c]);
+  if (!any || !IsFinite(wi) || !IsFinite(wo)) {
     Skip(SetAsideReason::kNotFinite);
     return false;
   }

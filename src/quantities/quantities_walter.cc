@@ -170,13 +170,18 @@ Quantity FromOffCenterQuantity() {
   return q;
 }
 
+InputColumn ImaginaryIndex() {
+  return Within("k", "1", "imaginary part of the index, 0 of a dielectric", 0, std::numeric_limits<double>::infinity(),
+                false, true);
+}
+
 Quantity FresnelQuantity() {
   Quantity q;
   q.name = "fresnel";
   q.description = "reflectance of a smooth conductor, unpolarised light";
   q.source = "Fresnel's equations for the complex index eta + i k";
   q.inputs = {Within("cos", "1", "cosine of the angle of incidence", 0, 1), Positive("eta", "real part of the index"),
-              Positive("k", "imaginary part of the index")};
+              ImaginaryIndex()};
   q.results = {{"F", "1", "reflectance"}};
   AddDerivatives(&q, "F", "1", ParameterNames(q));
   q.evaluate = [](const double* in, double* out) {
@@ -196,7 +201,7 @@ Quantity BrdfQuantity() {
   AddDirection(&q, "o", "direction to the viewer; at or below the horizon all is 0");
   AddDirection(&q, "i", "direction to the light; at or below the horizon all is 0");
   q.inputs.push_back(Positive("eta", "real part of the index"));
-  q.inputs.push_back(Positive("k", "imaginary part of the index"));
+  q.inputs.push_back(ImaginaryIndex());
   q.results = {{"D", "1/sr", "normal distribution at the half vector"},
                {"G1_o", "1", "masking of the viewer, at most 1"},
                {"G1_i", "1", "masking of the light, at most 1"},

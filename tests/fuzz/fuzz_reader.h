@@ -8,6 +8,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/io/formats.h"
+#include "lobefit/measurement/incomplete.h"
 
 namespace lobefit {
 
@@ -55,7 +56,9 @@ inline int FuzzReader(bool (*recognise)(std::string_view), Measurement (*read)(c
   }
   recognise(bytes);
   try {
-    CheckPromises(read(InputFile{"fuzz", bytes}, options));
+    Measurement measurement = read(InputFile{"fuzz", bytes}, options);
+    DropIncomplete(&measurement);
+    CheckPromises(measurement);
   } catch (const InputError&) {
   }
   return 0;

@@ -82,7 +82,7 @@ double FresnelConductor(double c, const ConductorIndex& index, ConductorFresnelG
   double p, q;
   if (re >= 0) {
     p = std::sqrt(0.5 * (modulus + re));
-    q = 0.5 * n2_im / p;
+    q = p > 0 ? 0.5 * n2_im / p : 0.0;
   } else {
     q = std::sqrt(0.5 * (modulus - re));
     p = 0.5 * n2_im / q;
@@ -100,8 +100,9 @@ double FresnelConductor(double c, const ConductorIndex& index, ConductorFresnelG
       const double ds_den = 2.0 * ((c + p) * (dc + dp) + q * dq);
       const double dp_den = 2.0 * ((x + p) * (dx + dp) + (y + q) * (dy + dq));
       const double dww = 2.0 * (p * dp + q * dq) - 2.0 * c * dc;
-      const double dts = ts * (dp / p - ds_den / s_den);
-      const double dtp = tp * (dp / p + dww / (ww + sin2) - dp_den / p_den);
+      // Without a division by p, which is 0 where a dielectric (k = 0) reflects totally.
+      const double dts = (4.0 * dp - ts * ds_den) / s_den;
+      const double dtp = (4.0 * (dp * (ww + sin2) + p * dww) - tp * dp_den) / p_den;
       return -0.5 * (dc * (ts + tp) + c * (dts + dtp));
     };
     // dw = (n dn + c dc) / w.

@@ -39,10 +39,10 @@ struct ConductorFresnelGradient {
   double dc, deta, dk;
 };
 
-// Exact reflectance of a conductor, eta > 0, k > 0 (k = 0: FresnelDielectric, which knows total reflection). With
-// p + i q = sqrt((eta + i k)^2 - sin^2), 1 - F = (T_s + T_p) / 2, T_s = 4 c p / |c + w|^2, T_p = 4 c p (|w|^2 + sin^2)
-// / |n^2 c + w|^2: every factor is a sum of positive terms, so value and derivatives keep their digits towards grazing
-// and towards F = 1.
+// Exact reflectance of a conductor, eta > 0, k >= 0 (k = 0 is a dielectric; at its critical angle derivatives are
+// infinite). With p + i q = sqrt((eta + i k)^2 - sin^2), 1 - F = (T_s + T_p) / 2, T_s = 4 c p / |c + w|^2, T_p = 4 c p
+// (|w|^2 + sin^2) / |n^2 c + w|^2: every factor is a sum of positive terms, so value and derivatives keep their digits
+// towards grazing and towards F = 1.
 double FresnelConductor(double c, const ConductorIndex& index, ConductorFresnelGradient* gradient = nullptr);
 
 // Exact reflectance of a dielectric of relative index n > 0. For n < 1 total reflection is a kink of the physics:

@@ -66,9 +66,11 @@ void ReadOutput(const InputFile& file, const AltaHeader& header, const ReadOptio
     }
   }
   layout->kind_from_option = options.value_kind.has_value();
+  layout->kind_not_stated = entry == nullptr && !options.value_kind;
   if (name == "INV_STERADIAN_COSINE_FACTOR") {
     layout->kind = ValueKind::kBrdfCosO;
-  } else if (name != "INV_STERADIAN" && name != "RGB_COLOR" && name != "XYZ_COLOR" && !options.value_kind) {
+  } else if (name != "INV_STERADIAN" && name != "RGB_COLOR" && name != "XYZ_COLOR" && !options.value_kind &&
+             !layout->kind_not_stated) {
     FailAtLine(file, line,
                "#PARAM_OUT is '" + Excerpt(name) +
                    "', which does not say what the values are; known are "

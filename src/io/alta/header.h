@@ -40,6 +40,7 @@ struct AltaLayout {
   bool one_interval_number = false;
   ValueKind kind = ValueKind::kBrdf;
   bool kind_from_option = false;
+  bool kind_not_stated = false;  // no #PARAM_OUT and no option: taken as f_r to describe the file by
   Channels channels;
 
   std::size_t interval_columns() const {

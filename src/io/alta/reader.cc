@@ -282,7 +282,14 @@ Measurement ReadAlta(const InputFile& file, const ReadOptions& options) {
       binary || header.stream ? ReadBinary(file, header, &layout, options) : ReadText(file, header, &layout, options);
   measurement.isotropic = layout.input->isotropic;
   measurement.conventions["angle-unit"] = "rad (format)";
-  measurement.conventions["value-kind"] = Name(layout.kind) + (layout.kind_from_option ? "" : " (header)");
+  measurement.conventions["value-kind"] = Name(layout.kind) + (layout.kind_from_option  ? ""
+                                                               : layout.kind_not_stated ? " (not stated)"
+                                                                                        : " (header)");
+  if (layout.kind_not_stated) {
+    measurement.remarks.push_back(
+        "the file does not say what its values are (no #PARAM_OUT); a fit needs --value-kind, one of " +
+        AllowedValueKinds());
+  }
   measurement.conventions["directions"] = std::string(layout.input->name) + " (header)";
   return measurement;
 }

@@ -10,6 +10,7 @@
 
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
+#include "lobefit/io/text/units.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {
@@ -136,7 +137,7 @@ Measurement ReadAstm(const InputFile& file, const ReadOptions& options) {
   const Columns columns = SortColumns(file, header);
   const Quantity quantity = QuantityOf(file, header, options);
   const AngleUnit unit = options.angle_unit.value_or(AngleUnit::kRadians);
-  const double to_radians = unit == AngleUnit::kRadians ? 1 : kPi / 180;
+  const double to_radians = RadiansPerUnit(unit);
   const IncidentSense sense = options.incident_sense.value_or(IncidentSense::kTowardsSource);
   const double turn = sense == IncidentSense::kPropagation ? kPi : 0;
 
@@ -161,7 +162,7 @@ Measurement ReadAstm(const InputFile& file, const ReadOptions& options) {
         FailAtLine(file, at,
                    header.columns[*column] + " is " + std::string(Trim(fields[*column])) + ", beyond " +
                        (polar ? "a half" : "a full") + " turn in " +
-                       (unit == AngleUnit::kRadians ? "radians; for degrees use --angle-unit deg" : "degrees"));
+                       (unit == AngleUnit::kRadians ? "radians; for degrees use --angle-unit deg" : Name(unit)));
       }
       return radians;
     };
@@ -183,8 +184,7 @@ Measurement ReadAstm(const InputFile& file, const ReadOptions& options) {
   }
   Measurement measurement = builder.Finish();
   measurement.isotropic = !columns.phi_i;
-  measurement.conventions["angle-unit"] =
-      std::string(unit == AngleUnit::kRadians ? "rad" : "deg") + (options.angle_unit ? "" : " (default)");
+  measurement.conventions["angle-unit"] = Name(unit) + (options.angle_unit ? "" : " (default)");
   measurement.conventions["value-kind"] = Name(quantity.kind) + quantity.source;
   measurement.conventions["incident"] = std::string(sense == IncidentSense::kPropagation ? "propagation" : "towards") +
                                         (options.incident_sense ? "" : " (default)");

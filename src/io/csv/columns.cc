@@ -1,115 +1,227 @@
 #include "lobefit/io/csv/columns.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <utility>
 
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/name_rules.h"
 
 namespace lobefit {
 namespace {
 
-struct Synonyms {
+// Whole names, joined by "_", that are none of the grammar's.
+struct Synonym {
+  std::string_view name;
   ColumnRole role;
-  std::optional<ValueKind> kind;
-  std::vector<std::string_view> names;
+  Coordinate coordinate = Coordinate::kThetaI;
 };
+constexpr std::array<Synonym, 52> kSynonyms = {{
+    {"aoi", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"incidence", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"incident", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"inc", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"einfallswinkel", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"sza", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"iza", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"saa", ColumnRole::kCoordinate, Coordinate::kPhiI},
+    {"iaa", ColumnRole::kCoordinate, Coordinate::kPhiI},
+    {"vza", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"oza", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"receive", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"emission", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"emergence", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"viewing", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"ausfallswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"streuwinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"beobachtungswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"detektorwinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"reflexionswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"aor", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"aov", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"vaa", ColumnRole::kCoordinate, Coordinate::kPhiO},
+    {"oaa", ColumnRole::kCoordinate, Coordinate::kPhiO},
+    {"raa", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
+    {"dphi", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
+    {"dazimuth", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
+    {"phase", ColumnRole::kCoordinate, Coordinate::kPhase},
+    {"phase_angle", ColumnRole::kCoordinate, Coordinate::kPhase},
+    {"delta_theta", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
+    {"dtheta", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
+    {"aspecular", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
+    {"aspecular_angle", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
+    {"beta_0", ColumnRole::kCoordinate, Coordinate::kBeta0},
+    {"beta", ColumnRole::kCoordinate, Coordinate::kBeta},
+    {"beta_s", ColumnRole::kCoordinate, Coordinate::kBeta},
+    {"beta_beta_0", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
+    {"b_b0", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
+    {"delta_beta", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
+    {"dbeta", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
+    {"sample_rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
+    {"rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
+    {"sample_azimuth", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
+    {"stage_rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
+    {"weight", ColumnRole::kWeight},
+    {"weights", ColumnRole::kWeight},
+    {"pol", ColumnRole::kPolarisation},
+    {"polarization", ColumnRole::kPolarisation},
+    {"polarisation", ColumnRole::kPolarisation},
+    {"fr_authors_formula", ColumnRole::kOtherValue},
+    {"polarization_state", ColumnRole::kPolarisation},
+    {"polarisation_state", ColumnRole::kPolarisation},
+}};
 
-const std::vector<Synonyms>& Table() {
-  static const std::vector<Synonyms> table = {
-      {ColumnRole::kThetaI,
-       {},
-       {"theta_i", "thetai", "theta_in", "theta_inc", "theta_l", "inc", "incidence", "incidence_angle", "aoi"}},
-      {ColumnRole::kPhiI, {}, {"phi_i", "phii", "phi_in", "phi_inc", "phi_l", "phi"}},
-      {ColumnRole::kThetaO,
-       {},
-       {"theta_o", "thetao", "theta_r", "thetar", "theta_s", "thetas", "theta_v", "thetav", "theta_out", "receive"}},
-      {ColumnRole::kPhiO, {}, {"phi_o", "phio", "phi_r", "phir", "phi_s", "phis", "phi_v", "phiv", "phi_out"}},
-      {ColumnRole::kDeltaPhi, {}, {"dphi", "delta_phi", "deltaphi"}},
-      {ColumnRole::kAzimuth, {}, {"azimuth"}},
-      {ColumnRole::kWavelength, {}, {"wavelength", "lambda", "wavelength_nm", "lambda_nm", "wavelength_um"}},
-      {ColumnRole::kValue, {}, {"value"}},
-      {ColumnRole::kValue, ValueKind::kBrdf, {"f", "fr", "f_r", "brdf", "bsdf", "f_r11", "fr_l_over_e"}},
-      {ColumnRole::kValue, ValueKind::kBrdfCosO, {"f_cos_o", "brdf_cos_o", "ccbrdf"}},
-      {ColumnRole::kValue, ValueKind::kBrdfCosI, {"f_cos_i", "brdf_cos_i"}},
-      {ColumnRole::kValue, ValueKind::kReflectanceFactor, {"pi_f", "brf", "reflectance_factor"}},
-      {ColumnRole::kValue, ValueKind::kIntensity, {"intensity"}},
-      {ColumnRole::kValue, ValueKind::kReading, {"rt"}},
-      {ColumnRole::kOtherValue, ValueKind::kBrdf, {"fr_authors_formula"}},
-      {ColumnRole::kSigma, {}, {"sigma", "std", "stddev", "uncertainty"}},
-      {ColumnRole::kWeight, {}, {"weight"}},
-      {ColumnRole::kIgnored,
-       {},
-       {"index", "id", "no", "row", "time", "date", "temperature", "comment", "l_o_raw", "radiance", "irradiance",
-        "raw", "counts", "signal"}},
-  };
-  return table;
-}
+constexpr std::array<std::string_view, 57> kIgnored = {"index",
+                                                       "id",
+                                                       "no",
+                                                       "nr",
+                                                       "row",
+                                                       "rows",
+                                                       "n",
+                                                       "num",
+                                                       "number",
+                                                       "#",
+                                                       "point",
+                                                       "time",
+                                                       "date",
+                                                       "datetime",
+                                                       "timestamp",
+                                                       "temperature",
+                                                       "temp",
+                                                       "humidity",
+                                                       "comment",
+                                                       "comments",
+                                                       "remark",
+                                                       "remarks",
+                                                       "note",
+                                                       "notes",
+                                                       "operator",
+                                                       "file",
+                                                       "filename",
+                                                       "l_o_raw",
+                                                       "radiance",
+                                                       "irradiance",
+                                                       "raw",
+                                                       "counts",
+                                                       "signal",
+                                                       "dark",
+                                                       "reference",
+                                                       "gain",
+                                                       "exposure",
+                                                       "exposure_time",
+                                                       "integration_time",
+                                                       "power",
+                                                       "distance",
+                                                       "solid_angle",
+                                                       "aperture",
+                                                       "user",
+                                                       "sample",
+                                                       "material",
+                                                       "status",
+                                                       "flag",
+                                                       "scan",
+                                                       "step",
+                                                       "unnamed",
+                                                       "unnamed_0",
+                                                       "voltage",
+                                                       "current",
+                                                       "cos_theta_i",
+                                                       "cos_theta_o",
+                                                       "background"};
 
-// "L_o_raw(W/m2/sr)" -> "l_o_raw" and the unit "w/m2/sr"; "theta_i_deg" -> "theta_i" and "deg".
-std::string_view StripUnit(std::string_view name, std::string_view* unit) {
-  for (const auto& [open, close] : {std::pair{'(', ')'}, std::pair{'[', ']'}}) {
-    const std::size_t at = name.find(open);
-    if (at == std::string_view::npos || at == 0 || name.back() != close) continue;
-    *unit = Trim(name.substr(at + 1, name.size() - at - 2));
-    name = Trim(name.substr(0, at));
-  }
-  for (const std::string_view suffix : {"_deg", "_rad", "_degrees", "_radians"}) {
-    if (name.size() > suffix.size() && name.ends_with(suffix)) {
-      *unit = suffix.substr(1);
-      name.remove_suffix(suffix.size());
-      break;
-    }
-  }
-  return name;
-}
-
-// "550nm", "550 nm", "0.55um", "lambda=550", "550".
-std::optional<double> WavelengthOf(std::string_view name) {
-  if (name.starts_with("lambda=")) name.remove_prefix(7);
-  double scale = 1;
-  bool unit = false;
-  if (name.ends_with("nm")) {
-    name.remove_suffix(2);
-    unit = true;
-  } else if (name.ends_with("um")) {
-    name.remove_suffix(2);
-    scale = 1000;
-    unit = true;
-  }
-  const std::optional<double> number = ParseDouble(name);
-  if (!number || !std::isfinite(*number) || *number <= 0) return std::nullopt;
-  // A bare number is a wavelength only where it can be one in nanometres.
-  if (!unit && (*number < 100 || *number > 20000)) return std::nullopt;
-  return *number * scale;
-}
-
-void SetWavelength(double nm, CsvColumn* column) {
-  column->wavelength_nm = nm;
-  column->channel = FormatDouble(nm) + "nm";
-}
-
-// A name of a channel, as used by itself and after "sigma_".
-bool ClassifyChannel(std::string_view lower, CsvColumn* column) {
-  for (const std::string_view channel : {"r", "g", "b", "x", "y", "z"}) {
-    if (lower == channel) {
-      column->channel.assign(1, static_cast<char>(channel[0] - 'a' + 'A'));
-      return true;
-    }
-  }
-  const std::optional<double> nm = WavelengthOf(lower);
-  if (nm) SetWavelength(*nm, column);
-  return nm.has_value();
+bool IsValueWord(const std::string& word) {
+  std::optional<ValueKind> kind;
+  return NamesValue(word, &kind);
 }
 
 // Ratios of Mueller matrix elements beside f_r11, as in "f_r12/f_r11": the polarised part, which f_r does not need.
-bool IsMuellerRatio(std::string_view lower) {
-  return lower.size() == 11 && lower.starts_with("f_r") && lower.ends_with("/f_r11");
+bool IsMuellerRatio(const NameList& words) {
+  return words.size() == 4 && words[0] == "f" && words[2] == "f" && words[3] == "r11" && words[1].size() == 3 &&
+         words[1][0] == 'r';
 }
 
-bool IsAngle(ColumnRole role) {
-  return role == ColumnRole::kThetaI || role == ColumnRole::kPhiI || role == ColumnRole::kThetaO ||
-         role == ColumnRole::kPhiO || role == ColumnRole::kDeltaPhi || role == ColumnRole::kAzimuth;
+// "AOI=10", "theta_i 30", "BRDF (AOI 10 deg)", "10deg": a column of values at a fixed angle.
+bool ClassifyFixed(const NameList& words, CsvColumn* column) {
+  std::optional<double> number;
+  NameList rest;
+  std::string unit = column->unit;
+  for (const std::string& word : words) {
+    std::size_t digits = word.size();
+    while (digits > 0 && !(word[digits - 1] >= '0' && word[digits - 1] <= '9')) --digits;
+    const std::string tail = word.substr(digits);
+    if (!number && digits > 0 && ParseDouble(word.substr(0, digits)) && (tail.empty() || ParseAngleUnit(tail)) &&
+        word.find('e') == std::string::npos) {
+      number = ParseDouble(word.substr(0, digits));
+      if (!tail.empty()) unit = tail;
+    } else if (!(ParseAngleUnit(word) && word != "deg") && word != "deg" && word != "at" && !IsValueWord(word)) {
+      rest.push_back(word);
+    } else if (ParseAngleUnit(word)) {
+      unit = word;
+    }
+  }
+  if (!number || !std::isfinite(*number)) return false;
+  column->fixed = *number;
+  column->unit = unit;
+  if (rest.empty()) {
+    column->role = ColumnRole::kNumber;
+    column->angle_unit = ParseAngleUnit(unit);
+    return true;
+  }
+  const CsvColumn left = ClassifyColumn(Joined(rest));
+  if (left.role != ColumnRole::kCoordinate) return false;
+  column->role = ColumnRole::kFixed;
+  column->coordinate = left.coordinate;
+  column->from_horizon = left.from_horizon;
+  column->letter_s = left.letter_s;
+  column->angle_unit = ParseAngleUnit(unit);
+  return true;
+}
+
+void ParseUnit(CsvColumn* column) {
+  const std::string& unit = column->unit;
+  if (unit.empty()) return;
+  const auto refuse = [&](const std::string& allowed) {
+    if (column->problem.empty())
+      column->problem = "has the unit '" + Excerpt(unit) + "', which is not known; allowed are " + allowed;
+  };
+  switch (column->role) {
+    case ColumnRole::kCoordinate:
+    case ColumnRole::kFixed: {
+      const bool cosine = column->coordinate >= Coordinate::kWiX && column->coordinate <= Coordinate::kWoZ;
+      const bool sine = column->coordinate == Coordinate::kBeta || column->coordinate == Coordinate::kBeta0 ||
+                        column->coordinate == Coordinate::kBetaOffset;
+      if (cosine || sine) break;
+      column->angle_unit = ParseAngleUnit(unit);
+      if (!column->angle_unit)
+        refuse(unit == "grad" ? "deg, rad, gon, mrad (grad is read as deg by some and as gon by others)"
+                              : "deg, rad, gon, mrad, arcmin, arcsec");
+      break;
+    }
+    case ColumnRole::kWavelength:
+      column->wavelength_unit = ParseWavelengthUnit(unit);
+      if (!column->wavelength_unit) refuse("nm, um, mm, m, A, cm^-1, eV, THz");
+      break;
+    case ColumnRole::kValue:
+    case ColumnRole::kOtherValue:
+      if (column->value_scale) {
+        const std::optional<ValueScale> own = ParseValueScale(unit);
+        if (!own || (own->form != ValueScale::Form::kLinear && own->form != column->value_scale->form)) {
+          refuse("1/sr");
+        } else if (own->form == ValueScale::Form::kLinear) {
+          column->value_scale->factor *= own->factor;
+        }
+        break;
+      }
+      column->value_scale = ParseValueScale(unit);
+      if (!column->value_scale && column->role == ColumnRole::kValue)
+        refuse("1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.");
+      break;
+    case ColumnRole::kSigma:
+      if (unit == "%" || unit == "percent") column->relative = true;
+      break;
+    default:
+      break;
+  }
 }
 
 }  // namespace
@@ -117,36 +229,82 @@ bool IsAngle(ColumnRole role) {
 CsvColumn ClassifyColumn(std::string_view name) {
   CsvColumn column;
   column.name = std::string(Trim(name));
-  const std::string lower_case = ToLower(column.name);
-  std::string_view lower = lower_case;
-  if (lower.size() > 1 && lower.front() == '"' && lower.back() == '"') lower = lower.substr(1, lower.size() - 2);
-  std::string_view unit;
-  const std::string_view bare = StripUnit(lower, &unit);
-  for (const Synonyms& synonyms : Table()) {
-    if (std::find(synonyms.names.begin(), synonyms.names.end(), bare) == synonyms.names.end()) continue;
-    column.role = synonyms.role;
-    column.value_kind = synonyms.kind;
-    break;
+  NameWords split = SplitName(name);
+  if (split.words.size() > 12) return column;
+  column.unit = split.unit;
+  // A unit amid the words: "theta (deg) incident".
+  if (column.unit.empty()) {
+    const auto unit = std::find_if(split.words.begin(), split.words.end(),
+                                   [](const std::string& word) { return ParseAngleUnit(word).has_value(); });
+    if (unit != split.words.end() && split.words.size() > 2) {
+      column.unit = *unit;
+      split.words.erase(unit);
+    }
   }
-  if (IsAngle(column.role) && !unit.empty()) {
-    if (unit.starts_with("deg") || unit == "\xc2\xb0") column.angle_unit = AngleUnit::kDegrees;
-    if (unit.starts_with("rad")) column.angle_unit = AngleUnit::kRadians;
-  }
-  if (column.role != ColumnRole::kUnknown) return column;
-  if (ClassifyChannel(bare, &column) || ClassifyChannel(lower, &column)) {
-    column.role = ColumnRole::kChannel;
-  } else if (bare.starts_with("sigma_") && ClassifyChannel(bare.substr(6), &column)) {
-    column.role = ColumnRole::kSigma;
-  } else if (IsMuellerRatio(bare)) {
+  if (split.words.empty()) {
+    // pandas and R write row numbers under no name.
     column.role = ColumnRole::kIgnored;
+    return column;
   }
+  const std::string joined = Joined(split.words);
+  const auto* synonym =
+      std::find_if(kSynonyms.begin(), kSynonyms.end(), [&](const Synonym& s) { return s.name == joined; });
+  const NameList meaning = WithoutFillers(split.words);
+  const CsvColumn blank = column;
+  // Each rule starts from the bare name: one that does not match may have set some of what the next would not.
+  const auto attempt = [&](auto&& rule) {
+    CsvColumn trial = blank;
+    if (!rule(&trial)) return false;
+    column = std::move(trial);
+    return true;
+  };
+  const bool plain = split.function.empty() || split.function == "abs";
+  if (plain && synonym != kSynonyms.end()) {
+    column.role = synonym->role;
+    column.coordinate = synonym->coordinate;
+    column.magnitude = split.magnitude;
+  } else if (attempt([&](CsvColumn* c) { return ClassifyValue(split, c); })) {
+  } else if (attempt([&](CsvColumn* c) { return ClassifySpread(split, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) {
+               return ClassifyChannel(split.words, c) && (c->role = ColumnRole::kChannel, true);
+             })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyWavelengthColumn(meaning, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyAngle(meaning, split.magnitude, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyComponent(split.words, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyFixed(split.words, c); })) {
+  } else if (HoldsWord(kIgnored, joined) || IsMuellerRatio(split.words)) {
+    column.role = ColumnRole::kIgnored;
+  } else if (plain) {
+    attempt(
+        [&](CsvColumn* c) { return ClassifyValueOfChannel(split.words, c) && (c->role = ColumnRole::kChannel, true); });
+  }
+  ParseUnit(&column);
   return column;
 }
 
+void SetUnit(std::string_view unit, CsvColumn* column) {
+  if (!column->unit.empty()) return;
+  std::string_view text = Trim(unit);
+  if (text.size() > 1 && (text.front() == '(' || text.front() == '[') && (text.back() == ')' || text.back() == ']'))
+    text = text.substr(1, text.size() - 2);
+  column->unit = PlainUnit(text);
+  ParseUnit(column);
+}
+
+bool LooksLikeAngle(const CsvColumn& column) {
+  if (column.role != ColumnRole::kUnknown) return false;
+  const NameWords split = SplitName(column.name);
+  if (ParseAngleUnit(column.unit)) return true;
+  return std::any_of(split.words.begin(), split.words.end(),
+                     [](const std::string& word) { return IsAngleWord(word) || ParseAngleUnit(word).has_value(); });
+}
+
 std::string AllowedColumns() {
-  return "theta_i, phi_i, theta_o, phi_o, dphi, azimuth with incidence and receive, wavelength, one of f fr f_r brdf "
-         "bsdf "
-         "value, or R G B, or X Y Z, or wavelengths as 550nm; sigma, weight";
+  return "theta_i, phi_i, theta_o, phi_o, dphi, azimuth with incidence and receive, theta_o - theta_i, beta - beta0, "
+         "theta_h phi_h theta_d "
+         "phi_d, wi_x ... wo_z, sample_rotation, wavelength, one of f fr f_r brdf bsdf value, or R G B, or X Y Z, or "
+         "wavelengths as 550nm; "
+         "sigma, weight; other names by --columns theta_i=NAME,...";
 }
 
 }  // namespace lobefit

@@ -1,94 +1,356 @@
 #include "lobefit/io/csv/header.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "lobefit/base/csv_fields.h"
 #include "lobefit/base/text.h"
-#include "lobefit/io/text/options.h"
+#include "lobefit/io/csv/mapping.h"
+#include "lobefit/io/csv/no_value.h"
 #include "lobefit/io/text/place.h"
-#include "lobefit/math/vec.h"
 
 namespace lobefit {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+using Fields = std::vector<std::string_view>;
 
-std::string_view CommentText(std::string_view line) {
-  line = Trim(line);
-  line.remove_prefix(line.starts_with("//") ? 2 : 1);
-  return Trim(line);
+// A head is looked for in so much of the file.
+constexpr std::size_t kHeadLines = 400, kHeadBytes = std::size_t{1} << 20, kFirstRows = 60;
+
+struct Line {
+  std::size_t number = 0;
+  std::string_view text;
+  bool comment = false;
+};
+
+Fields Split(std::string_view text, char separator) {
+  Fields fields;
+  SplitCsvLine(text, separator, &fields);
+  return fields;
 }
 
-char FindSeparator(std::string_view line) {
-  for (const char candidate : {';', '\t', ','}) {
-    if (line.find(candidate) != std::string_view::npos) return candidate;
-  }
-  return kBlankSeparator;
+// "0,55", "-1,4e-14".
+bool HasDecimalComma(std::string_view field) {
+  const std::size_t comma = field.find(',');
+  if (comma == std::string_view::npos) return false;
+  std::string point(field);
+  point[comma] = '.';
+  return ParseDouble(point).has_value();
 }
 
-bool AllNumbers(const std::vector<std::string_view>& fields) {
+// "1.234,5" and "1,234.5".
+bool HasThousandsSeparator(std::string_view field) {
+  const std::size_t comma = field.find(','), point = field.find('.');
+  if (comma == std::string_view::npos || point == std::string_view::npos) return false;
+  return field.find_first_not_of("+-0123456789.,") == std::string_view::npos;
+}
+
+bool IsNumeric(std::string_view field, char separator) {
+  std::string storage;
+  field = Unquoted(field, &storage);
+  return ParseDouble(field) || (separator != ',' && (HasDecimalComma(field) || HasThousandsSeparator(field)));
+}
+
+bool NamesAnything(std::string_view field) {
+  std::string storage;
+  const CsvColumn column = ClassifyColumn(Unquoted(field, &storage));
+  return column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kValue ||
+         column.role == ColumnRole::kWavelength || column.role == ColumnRole::kFixed;
+}
+
+// At least two numbers, at least as many of them as of anything else, and no name of a column.
+bool IsData(const Fields& fields, char separator) {
+  std::size_t numbers = 0, others = 0;
   for (const std::string_view field : fields) {
-    if (!ParseDouble(field)) return false;
+    if (IsNumeric(field, separator)) {
+      ++numbers;
+    } else if (!Trim(field).empty()) {
+      ++others;
+    }
   }
-  return true;
+  if (numbers < 2 || numbers < others) return false;
+  return others == 0 || std::none_of(fields.begin(), fields.end(), [&](std::string_view field) {
+           return !IsNumeric(field, separator) && !Trim(field).empty() && NamesAnything(field);
+         });
 }
 
-std::vector<CsvColumn> Classify(const std::vector<std::string_view>& names) {
+std::vector<CsvColumn> Classify(const Fields& names) {
   std::vector<CsvColumn> columns;
-  for (const std::string_view name : names) columns.push_back(ClassifyColumn(name));
+  std::string storage;
+  for (const std::string_view name : names) columns.push_back(ClassifyColumn(Unquoted(name, &storage)));
   return columns;
 }
 
-bool NamesPolarAngles(const std::vector<CsvColumn>& columns) {
-  bool theta_i = false, theta_o = false;
-  for (const CsvColumn& column : columns) {
-    theta_i = theta_i || column.role == ColumnRole::kThetaI;
-    theta_o = theta_o || column.role == ColumnRole::kThetaO;
-  }
-  return theta_i && theta_o;
+bool NamesADirection(const std::vector<CsvColumn>& columns) {
+  return columns.size() > 1 && std::any_of(columns.begin(), columns.end(), [](const CsvColumn& column) {
+           return column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed;
+         });
 }
 
-template <class Value>
-void Set(const InputFile& file, std::size_t line, std::string_view key, std::string_view word,
-         const std::string& allowed, const std::optional<Value>& value, std::optional<Value>* target) {
-  if (!value) {
-    FailAtLine(file, line, std::string(key) + " is '" + Excerpt(word) + "'; allowed are " + allowed);
-  }
-  *target = value;
+// "theta\phi": rows and columns of a table of one incidence.
+bool IsCorner(std::string_view name, CsvColumn* rows, Coordinate* columns) {
+  std::string storage;
+  name = Unquoted(name, &storage);
+  const std::size_t at = name.find_first_of("\\/|");
+  if (at == std::string_view::npos) return false;
+  const CsvColumn left = ClassifyColumn(name.substr(0, at)), right = ClassifyColumn(name.substr(at + 1));
+  if (left.role != ColumnRole::kCoordinate || right.role != ColumnRole::kCoordinate ||
+      left.coordinate == right.coordinate)
+    return false;
+  *rows = left;
+  rows->name = std::string(name);
+  *columns = right.coordinate;
+  return true;
 }
 
-// Takes "key: value" and "key = value"; any other comment is prose.
-void ReadKey(const InputFile& file, std::size_t line, std::string_view comment, CsvHeader* header) {
-  const std::size_t at = comment.find_first_of(":=");
-  if (at == std::string_view::npos) return;
-  const std::string key = ToLower(Trim(comment.substr(0, at)));
-  const std::string_view word = Trim(comment.substr(at + 1));
-  if (key == "angle-unit") {
-    Set(file, line, key, word, "deg, rad", ParseAngleUnit(word), &header->angle_unit);
-  } else if (key == "value-kind") {
-    Set(file, line, key, word, AllowedValueKinds(), ParseValueKind(word), &header->value_kind);
-  } else if (key == "incident") {
-    Set(file, line, key, word, "towards, propagation", ParseIncidentSense(word), &header->incident_sense);
-  } else if (key == "wavelength-unit") {
-    const std::string unit = ToLower(word);
-    std::optional<double> scale;
-    if (unit == "nm") scale = 1;
-    if (unit == "um") scale = 1e3;
-    if (unit == "m") scale = 1e9;
-    Set(file, line, key, word, "nm, um, m", scale, &header->nm_per_wavelength_unit);
-  } else if (key == "sample-rotation-deg") {
-    const std::optional<double> degrees = ParseDouble(word);
-    if (!degrees || !std::isfinite(*degrees)) {
-      FailAtLine(file, line, "sample-rotation-deg is '" + Excerpt(word) + "'; a number of degrees is allowed");
+bool IsUnitOrBlank(std::string_view field) {
+  std::string storage;
+  std::string_view text = Unquoted(field, &storage);
+  if (text.size() > 1 && (text.front() == '(' || text.front() == '[')) text = text.substr(1, text.size() - 2);
+  return Trim(text).empty() || ParseAngleUnit(text) || ParseValueScale(text) || ParseWavelengthUnit(text) ||
+         Trim(text) == "#" || ToLower(Trim(text)) == "grad";
+}
+
+// Cells of a merged heading stand empty but for the first.
+std::vector<std::string> Combined(const Fields& upper, const Fields& lower) {
+  std::vector<std::string> names;
+  std::string heading, storage;
+  for (std::size_t i = 0; i < lower.size(); ++i) {
+    if (i < upper.size() && !Trim(upper[i]).empty()) heading = std::string(Unquoted(upper[i], &storage));
+    names.push_back(heading + " " + std::string(Unquoted(lower[i], &storage)));
+  }
+  return names;
+}
+
+class HeaderReader {
+ public:
+  HeaderReader(const InputFile& file, const std::string& columns) : file_(file), mapping_(columns) {}
+
+  CsvHeader Read() {
+    Gather();
+    if (lines_.empty() || std::all_of(lines_.begin(), lines_.end(), [](const Line& line) { return line.comment; })) {
+      data_ = lines_.size();
+      ReadCommentKeys();
+      FailAtLine(file_, last_line_, "the file ends before a line of column names");
     }
-    header->sample_rotation = DegreesToRadians(*degrees);
-  } else if (key.find('-') != std::string::npos) {
-    // A misspelt key would leave the file read in the wrong unit without a word.
-    const std::string suggestion =
-        DidYouMean(key, {"angle-unit", "value-kind", "wavelength-unit", "sample-rotation-deg"});
-    if (!suggestion.empty()) FailAtLine(file, line, "the key '" + Excerpt(key) + "' is not known" + suggestion);
+    FindData();
+    // A mapping of the columns may stand in the file; the option is the word of whoever reads it.
+    ReadCommentKeys();
+    if (mapping_.empty()) mapping_ = ColumnMapping(header_.keys.columns);
+    const bool named = FindNames();
+    ReadTitleKeys();
+    if (!named) FailWithoutNames();
+    mapping_.Fix(file_, header_.names_line, header_.columns, &header_.keys);
+    if (mapping_.head()) header_.head_coordinate = mapping_.head();
+    TakeUnits();
+    TakeRows();
+    return std::move(header_);
   }
-}
+
+ private:
+  void Gather() {
+    CsvLines lines(file_.bytes);
+    std::string_view text;
+    std::size_t bytes = 0;
+    while (lines_.size() < kHeadLines && bytes < kHeadBytes && lines.Next(&text)) {
+      last_line_ = lines.line_number();
+      bytes += text.size();
+      if (Trim(text).empty()) continue;
+      if (lines_.empty() && ToLower(text).starts_with("sep=") && text.size() >= 5) {
+        stated_separator_ = text[4];
+        continue;
+      }
+      lines_.push_back({lines.line_number(), text, IsComment(text)});
+    }
+  }
+
+  // The first row of data, and the separator by which it is one.
+  void FindData() {
+    std::vector<char> candidates = {';', '\t', '|', ',', kBlankSeparator};
+    // A line that Excel writes may name a separator that the file, saved again, does not have.
+    if (stated_separator_) candidates.insert(candidates.begin(), *stated_separator_);
+    for (const char candidate : candidates) {
+      for (std::size_t i = 0; i < lines_.size(); ++i) {
+        if (lines_[i].comment) continue;
+        const Fields fields = Split(lines_[i].text, candidate);
+        if (fields.size() < 2 || !IsData(fields, candidate)) continue;
+        header_.separator = candidate;
+        data_ = i;
+        FindDecimalMark();
+        return;
+      }
+    }
+    data_ = lines_.size();
+    const Line& first = *std::find_if(lines_.begin(), lines_.end(), [](const Line& line) { return !line.comment; });
+    for (const char candidate : {';', '\t', '|', ','}) {
+      if (first.text.find(candidate) == std::string_view::npos) continue;
+      header_.separator = candidate;
+      return;
+    }
+    header_.separator = kBlankSeparator;
+  }
+
+  void FindDecimalMark() {
+    if (header_.separator == ',') return;
+    std::size_t commas = 0, points = 0;
+    std::string storage;
+    for (std::size_t i = data_; i < lines_.size(); ++i) {
+      if (lines_[i].comment) continue;
+      for (const std::string_view raw : Split(lines_[i].text, header_.separator)) {
+        const std::string_view field = Unquoted(raw, &storage);
+        if (HasThousandsSeparator(field)) {
+          FailAtLine(file_, lines_[i].number,
+                     "'" + Excerpt(field) +
+                         "' has both a comma and a point; write numbers without separators between thousands");
+        }
+        if (HasDecimalComma(field)) {
+          ++commas;
+        } else if (field.find('.') != std::string_view::npos && ParseDouble(field)) {
+          ++points;
+        }
+      }
+    }
+    if (commas > 0 && points > 0) {
+      FailAtLine(file_, lines_[data_].number,
+                 "some numbers have a decimal comma and some a decimal point, or commas separate thousands; write all "
+                 "with points");
+    }
+    if (commas > 0) {
+      header_.decimal_mark = ',';
+      header_.remarks.emplace_back("decimal commas were read");
+    }
+  }
+
+  bool SetNames(std::size_t at, std::vector<CsvColumn> columns) {
+    header_.columns = std::move(columns);
+    header_.names_line = lines_[at].number;
+    header_.names = std::string(lines_[at].text);
+    names_ = at;
+    return true;
+  }
+
+  bool TryNames(std::size_t at) {
+    const std::string_view text = lines_[at].comment ? CommentText(lines_[at].text) : lines_[at].text;
+    const Fields fields = Split(text, header_.separator);
+    if (fields.size() < 2 || (fields.size() == 2 && IsNumeric(fields[1], header_.separator))) return false;
+    std::vector<CsvColumn> columns = Classify(fields);
+    CsvColumn rows;
+    Coordinate head = Coordinate::kPhiO;
+    if (IsCorner(fields[0], &rows, &head)) {
+      columns[0] = rows;
+      header_.head_coordinate = head;
+      return SetNames(at, std::move(columns));
+    }
+    // Angles under merged headings: "Illumination;;Viewing" over "theta;phi;theta;phi".
+    std::size_t lone = 0;
+    for (const CsvColumn& column : columns) {
+      lone += column.role == ColumnRole::kCoordinate &&
+                      (column.coordinate == Coordinate::kTheta || column.coordinate == Coordinate::kPhi)
+                  ? 1
+                  : 0;
+    }
+    if (lone > 1 && at > 0 && !lines_[at - 1].comment) {
+      const std::vector<std::string> names = Combined(Split(lines_[at - 1].text, header_.separator), fields);
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const CsvColumn combined = ClassifyColumn(names[i]);
+        if (combined.role == ColumnRole::kCoordinate) columns[i] = combined;
+      }
+    }
+    mapping_.Rename(&columns);
+    if (!NamesADirection(columns)) return false;
+    return SetNames(at, std::move(columns));
+  }
+
+  bool FindNames() {
+    const std::size_t fields = data_ < lines_.size() ? Split(lines_[data_].text, header_.separator).size() : 0;
+    for (const bool comments : {false, true}) {
+      for (std::size_t i = data_; i-- > 0;) {
+        if (lines_[i].comment != comments || !TryNames(i)) continue;
+        if (comments && header_.columns.size() != fields && fields > 0) {
+          FailAtLine(file_, lines_[data_].number,
+                     "has " + std::to_string(fields) + " fields, but line " + std::to_string(header_.names_line) +
+                         " names " + std::to_string(header_.columns.size()) + " columns");
+        }
+        return true;
+      }
+    }
+    // A line of numbers under an empty corner, and the rows below it.
+    if (data_ + 1 < lines_.size()) {
+      const Fields names = Split(lines_[data_].text, header_.separator);
+      if (Trim(names[0]).empty() && mapping_.head()) {
+        std::vector<CsvColumn> columns = Classify(names);
+        mapping_.Rename(&columns);
+        SetNames(data_, std::move(columns));
+        ++data_;
+        return true;
+      }
+    }
+    // No line names a direction: the last line of words before the data then says what there is.
+    for (std::size_t i = data_; i-- > 0;) {
+      if (lines_[i].comment) continue;
+      const Fields names = Split(lines_[i].text, header_.separator);
+      if (names.size() < 2 && data_ < lines_.size()) continue;
+      if (std::all_of(names.begin(), names.end(), IsUnitOrBlank)) continue;
+      std::vector<CsvColumn> columns = Classify(names);
+      mapping_.Rename(&columns);
+      return SetNames(i, std::move(columns));
+    }
+    return false;
+  }
+
+  void ReadCommentKeys() {
+    for (std::size_t i = 0; i < data_; ++i) {
+      if (lines_[i].comment) ReadKey(file_, lines_[i].number, CommentText(lines_[i].text), &header_.keys);
+    }
+  }
+
+  // Titles above the names: "Wavelength (nm): 633;;;;", "AOI;30;deg".
+  void ReadTitleKeys() {
+    for (std::size_t i = 0; i < data_; ++i) {
+      if (i != names_ && !lines_[i].comment)
+        ReadKey(file_, lines_[i].number, Split(lines_[i].text, header_.separator), &header_.keys);
+    }
+  }
+
+  void TakeUnits() {
+    header_.first_data_line = data_ < lines_.size() ? lines_[data_].number : lines_[names_].number + 1;
+    for (std::size_t i = names_ + 1; i < data_; ++i) {
+      if (lines_[i].comment) continue;
+      const Fields units = Split(lines_[i].text, header_.separator);
+      if (units.size() > header_.columns.size() + 1 || !std::all_of(units.begin(), units.end(), IsUnitOrBlank))
+        continue;
+      std::string storage;
+      for (std::size_t c = 0; c < std::min(units.size(), header_.columns.size()); ++c)
+        SetUnit(Unquoted(units[c], &storage), &header_.columns[c]);
+    }
+    for (const std::string& remark : header_.keys.remarks) header_.remarks.push_back(remark);
+  }
+
+  void TakeRows() {
+    std::string storage;
+    for (std::size_t i = data_; i < lines_.size() && header_.first_rows.size() < kFirstRows; ++i) {
+      if (lines_[i].comment) continue;
+      std::vector<std::string> row;
+      for (const std::string_view field : Split(lines_[i].text, header_.separator))
+        row.emplace_back(Unquoted(field, &storage));
+      header_.first_rows.push_back(std::move(row));
+    }
+  }
+
+  [[noreturn]] void FailWithoutNames() const {
+    FailAtLine(
+        file_, lines_[std::min(data_, lines_.size() - 1)].number,
+        "numbers begin, but no line names the columns; write a line of names first. Allowed: " + AllowedColumns());
+  }
+
+  const InputFile& file_;
+  ColumnMapping mapping_;
+  CsvHeader header_;
+  std::vector<Line> lines_;
+  std::optional<char> stated_separator_;
+  std::size_t data_ = 0, names_ = static_cast<std::size_t>(-1), last_line_ = 1;
+};
 
 }  // namespace
 
@@ -97,48 +359,56 @@ bool IsComment(std::string_view line) {
   return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
 }
 
-std::vector<std::string_view> SplitFields(std::string_view line, char separator) {
-  return separator == kBlankSeparator ? SplitBlanks(line) : Split(line, separator);
+std::string_view CommentText(std::string_view line) {
+  line = Trim(line);
+  line.remove_prefix(line.starts_with("//") ? 2 : 1);
+  return Trim(line);
 }
 
-CsvHeader ReadCsvHeader(const InputFile& file) {
-  CsvHeader header;
-  LineReader lines(file.bytes);
-  std::string_view line;
-  std::vector<std::pair<std::size_t, std::string_view>> comments;
-  while (lines.Next(&line)) {
-    if (lines.line_number() == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
-    if (Trim(line).empty()) continue;
-    if (!IsComment(line)) break;
-    comments.emplace_back(lines.line_number(), CommentText(line));
-    ReadKey(file, lines.line_number(), comments.back().second, &header);
-    line = {};
+CsvLines::CsvLines(std::string_view bytes)
+    : bytes_(bytes), lines_(bytes), has_quotes_(bytes.find('"') != std::string_view::npos) {}
+
+bool CsvLines::Next(std::string_view* line) {
+  const std::size_t begin = lines_.offset();
+  if (!lines_.Next(line)) return false;
+  first_line_ = lines_.line_number();
+  if (!has_quotes_ || line->find('"') == std::string_view::npos || IsComment(*line)) return true;
+  // A quoted cell of a heading may have a few lines; a lone quote must not swallow the file.
+  constexpr int kMostLines = 8;
+  const auto open = [](std::string_view text) {
+    return EndsWithinQuotes(text, ',') || EndsWithinQuotes(text, ';') || EndsWithinQuotes(text, '\t');
+  };
+  LineReader ahead = lines_;
+  std::string_view joined = *line, next;
+  for (int i = 1; i < kMostLines && open(joined); ++i) {
+    if (!ahead.Next(&next)) return true;
+    joined = bytes_.substr(begin, ahead.offset() - begin);
+    while (!joined.empty() && (joined.back() == '\n' || joined.back() == '\r')) joined.remove_suffix(1);
+    if (open(joined)) continue;
+    lines_ = ahead;
+    *line = joined;
   }
-  if (Trim(line).empty()) FailAtLine(file, lines.line_number(), "the file ends before a line of column names");
-  header.separator = FindSeparator(line);
-  const std::vector<std::string_view> fields = SplitFields(line, header.separator);
-  if (!AllNumbers(fields)) {
-    header.columns = Classify(fields);
-    header.names_line = lines.line_number();
-    header.first_data_line = lines.line_number() + 1;
-    return header;
+  return true;
+}
+
+void SplitCsvLine(std::string_view line, char separator, std::vector<std::string_view>* fields) {
+  if (separator != kBlankSeparator) {
+    SplitQuoted(line, separator, fields);
+    return;
   }
-  header.first_data_line = lines.line_number();
-  for (auto comment = comments.rbegin(); comment != comments.rend(); ++comment) {
-    const std::vector<std::string_view> names = SplitFields(comment->second, header.separator);
-    std::vector<CsvColumn> columns = Classify(names);
-    if (!NamesPolarAngles(columns)) continue;
-    header.columns = std::move(columns);
-    header.names_line = comment->first;
-    if (names.size() != fields.size()) {
-      FailAtLine(file, header.first_data_line,
-                 "has " + std::to_string(fields.size()) + " fields, but line " + std::to_string(header.names_line) +
-                     " names " + std::to_string(names.size()) + " columns");
-    }
-    return header;
-  }
-  FailAtLine(file, header.first_data_line,
-             "numbers begin, but no line names the columns; write a line of names first. Allowed: " + AllowedColumns());
+  *fields = SplitBlanks(line);
+}
+
+std::optional<double> ParseCsvNumber(std::string_view field, char decimal_mark) {
+  if (decimal_mark == '.') return ParseDouble(field);
+  if (field.find('.') != std::string_view::npos && field.find(',') != std::string_view::npos) return std::nullopt;
+  std::string point(field);
+  std::replace(point.begin(), point.end(), decimal_mark, '.');
+  return ParseDouble(point);
+}
+
+CsvHeader ReadCsvHeader(const InputFile& file, const std::string& columns) {
+  return HeaderReader(file, columns).Read();
 }
 
 }  // namespace lobefit

@@ -1,9 +1,14 @@
 #include "lobefit/io/csv/layout.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <set>
 
+#include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/angles.h"
+#include "lobefit/io/csv/mapping.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 
@@ -16,30 +21,40 @@ std::string Quoted(const CsvColumn& column) {
   return quoted += '\'';
 }
 
+std::string NamesOf(const std::vector<CsvColumn>& columns) {
+  std::vector<std::string> names;
+  for (const CsvColumn& column : columns) names.push_back(Excerpt(column.name));
+  return Excerpt(Join(names), 200);
+}
+
 // Turns the header into a layout, or says what is missing, unknown or ambiguous.
 class LayoutBuilder {
  public:
   LayoutBuilder(const InputFile& file, const CsvHeader& header, const ReadOptions& options, Measurement* measurement)
-      : file_(file), header_(header), options_(options), measurement_(measurement) {}
+      : file_(file), header_(header), options_(options), columns_(header.columns), measurement_(measurement) {}
 
   CsvLayout Build() {
-    FindAngles();
-    if (options_.value_column) {
-      ChooseValueColumn(*options_.value_column);
-    } else {
+    FindFilters();
+    ResolveLetters();
+    ResolveHead();
+    FindAngles(file_, header_, options_, &columns_, &layout_, measurement_);
+    layout_.wavelength = FindOnly(ColumnRole::kWavelength);
+    layout_.polarisation = FindOnly(ColumnRole::kPolarisation);
+    for (const RowFilter& filter : layout_.filters) {
+      if (filter.column == layout_.polarisation) layout_.polarisation = kNoColumn;
+    }
+    const std::string value_column = options_.value_column.value_or(header_.keys.value_column);
+    if (!value_column.empty()) {
+      ChooseValueColumn(value_column);
+    } else if (!ChooseFixedGroups()) {
       ChooseChannels();
     }
+    FindWavelength();
     FindUncertainties();
-    CheckUnknownColumns();
+    CheckColumns();
     SetValueKind();
-    layout_.is_read.assign(header_.columns.size(), false);
-    for (const std::size_t column : {layout_.theta_i, layout_.phi_i, layout_.theta_o, layout_.phi_o, layout_.delta_phi,
-                                     layout_.azimuth, layout_.wavelength, layout_.weight, layout_.sigma}) {
-      if (column != kNoColumn) layout_.is_read[column] = true;
-    }
-    for (const std::size_t column : layout_.values) layout_.is_read[column] = true;
-    for (const std::size_t column : layout_.channel_sigmas) layout_.is_read[column] = true;
-    return layout_;
+    MarkNumbers();
+    return std::move(layout_);
   }
 
  private:
@@ -47,66 +62,113 @@ class LayoutBuilder {
 
   std::size_t FindOnly(ColumnRole role) const {
     std::size_t found = kNoColumn;
-    for (std::size_t i = 0; i < header_.columns.size(); ++i) {
-      if (header_.columns[i].role != role) continue;
-      if (found != kNoColumn) {
-        Fail("the columns " + Quoted(header_.columns[found]) + " and " + Quoted(header_.columns[i]) +
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (columns_[i].role != role) continue;
+      if (found != kNoColumn)
+        Fail("the columns " + Quoted(columns_[found]) + " and " + Quoted(columns_[i]) +
              " mean the same; remove one of them");
-      }
       found = i;
     }
     return found;
   }
 
-  void FindAngles() {
-    layout_.theta_i = FindOnly(ColumnRole::kThetaI);
-    layout_.theta_o = FindOnly(ColumnRole::kThetaO);
-    layout_.phi_i = FindOnly(ColumnRole::kPhiI);
-    layout_.phi_o = FindOnly(ColumnRole::kPhiO);
-    layout_.delta_phi = FindOnly(ColumnRole::kDeltaPhi);
-    layout_.azimuth = FindOnly(ColumnRole::kAzimuth);
-    layout_.wavelength = FindOnly(ColumnRole::kWavelength);
-    if (layout_.theta_i == kNoColumn || layout_.theta_o == kNoColumn) {
-      std::vector<std::string> names;
-      for (const CsvColumn& column : header_.columns) names.push_back(Excerpt(column.name));
-      Fail(std::string("no column holds the polar angle ") +
-           (layout_.theta_i == kNoColumn ? "of the light (theta_i)" : "of the viewer (theta_o)") +
-           "; the columns are " + Excerpt(Join(names), 200) + "; allowed: " + AllowedColumns());
+  // --where COLUMN=VALUE,...
+  void FindFilters() {
+    const std::string& text = options_.where.empty() ? header_.keys.where : options_.where;
+    if (Trim(text).empty()) return;
+    for (const std::string_view item : Split(text, ',')) {
+      const std::size_t at = item.find('=');
+      if (at == std::string_view::npos || Trim(item.substr(0, at)).empty()) {
+        throw UsageError("--where " + Excerpt(text, 100) + ": '" + Excerpt(Trim(item)) +
+                         "' is not COLUMN=VALUE; write it as in pol=s");
+      }
+      const std::size_t column = FindColumn(columns_, item.substr(0, at));
+      if (column == columns_.size()) {
+        Fail("no column is named '" + Excerpt(Trim(item.substr(0, at))) +
+             "', which --where asks for; the columns are " + NamesOf(columns_));
+      }
+      layout_.filters.push_back({column, ToLower(Trim(item.substr(at + 1)))});
     }
-    if (layout_.phi_o != kNoColumn && layout_.delta_phi != kNoColumn) {
-      Fail("both phi_o and dphi are given; remove one of them");
+    measurement_->conventions["where"] = Excerpt(text, 80) + (options_.where.empty() ? " (header)" : " (option)");
+  }
+
+  // "f_R" is f_r where no "f_G" and "f_B" stand beside it, and a channel where they do.
+  void ResolveLetters() {
+    for (CsvColumn& column : columns_) {
+      if (column.role != ColumnRole::kValue) continue;
+      const NameWords split = SplitName(column.name);
+      if (split.words.size() != 2 || split.words[1] != "r") continue;
+      const auto sibling = [&](const char* letter) {
+        return std::any_of(columns_.begin(), columns_.end(), [&](const CsvColumn& other) {
+          const NameWords name = SplitName(other.name);
+          return other.role == ColumnRole::kChannel && name.words.size() == 2 && name.words[0] == split.words[0] &&
+                 name.words[1] == letter;
+        });
+      };
+      if (!sibling("g") && !sibling("b")) continue;
+      column.role = ColumnRole::kChannel;
+      column.channel = "R";
     }
-    if (layout_.azimuth != kNoColumn &&
-        (layout_.phi_o != kNoColumn || layout_.delta_phi != kNoColumn || layout_.phi_i != kNoColumn)) {
-      Fail("both azimuth and phi columns are given; name them phi_i and phi_o");
+  }
+
+  // Names that are numbers, where the head says what they are.
+  void ResolveHead() {
+    std::vector<std::string> numbers;
+    for (CsvColumn& column : columns_) {
+      const bool bare = column.role == ColumnRole::kChannel && column.wavelength_nm > 0 &&
+                        ParseCsvNumber(column.name, header_.decimal_mark);
+      if (column.role != ColumnRole::kNumber && !(bare && header_.head_coordinate)) continue;
+      if (!header_.head_coordinate) {
+        numbers.push_back(Excerpt(column.name));
+        continue;
+      }
+      if (bare) column.fixed = *ParseCsvNumber(column.name, header_.decimal_mark);
+      column.role = ColumnRole::kFixed;
+      column.coordinate = *header_.head_coordinate;
+    }
+    if (numbers.size() > 1) {
+      Fail("the names of columns are numbers: " + Excerpt(Join(numbers), 80) +
+           "; say what they are by --columns, as in theta_i=names, or write one row a value with the columns theta_i, "
+           "theta_o, dphi, brdf");
     }
   }
 
   void ChooseValueColumn(const std::string& name) {
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < header_.columns.size(); ++i) {
-      const CsvColumn& column = header_.columns[i];
-      names.push_back(Excerpt(column.name));
-      if (ToLower(column.name) != ToLower(Trim(name))) continue;
-      layout_.values = {i};
-      layout_.channels.names = {column.role == ColumnRole::kChannel ? column.channel : "Y"};
-      if (column.wavelength_nm > 0) layout_.channels.wavelengths_nm = {column.wavelength_nm};
-      chosen_ = i;
-      measurement_->conventions["value-column"] = column.name + " (option)";
-      return;
+    const std::size_t at = FindColumn(columns_, name);
+    if (at == columns_.size())
+      Fail("no column is named '" + Excerpt(name) + "', which --value-column asks for; the columns are " +
+           NamesOf(columns_));
+    const CsvColumn& column = columns_[at];
+    layout_.groups = {{{}, {at}}};
+    layout_.channels.names = {column.role == ColumnRole::kChannel ? column.channel : "Y"};
+    if (column.wavelength_nm > 0) layout_.channels.wavelengths_nm = {column.wavelength_nm};
+    measurement_->conventions["value-column"] = column.name + " (option)";
+  }
+
+  // A table with a column for each angle.
+  bool ChooseFixedGroups() {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (columns_[i].role == ColumnRole::kFixed)
+        layout_.groups.push_back({{{columns_[i].coordinate, columns_[i].fixed}}, {i}});
     }
-    Fail("no column is named '" + Excerpt(name) + "', which --value-column asks for; the columns are " +
-         Excerpt(Join(names), 200));
+    if (layout_.groups.empty()) return false;
+    layout_.channels.names = {"Y"};
+    measurement_->conventions["value-column"] =
+        "one for each angle: " + std::to_string(layout_.groups.size()) + " columns";
+    return true;
   }
 
   void ChooseChannels() {
     std::vector<std::size_t> mono, spectral;
     std::map<std::string, std::size_t> letters;
-    for (std::size_t i = 0; i < header_.columns.size(); ++i) {
-      const CsvColumn& column = header_.columns[i];
+    std::set<double> wavelengths;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const CsvColumn& column = columns_[i];
       if (column.role == ColumnRole::kValue) mono.push_back(i);
       if (column.role != ColumnRole::kChannel) continue;
       if (column.wavelength_nm > 0) {
+        if (!wavelengths.insert(column.wavelength_nm).second)
+          Fail("two columns hold the channel " + column.channel + "; remove one of them");
         spectral.push_back(i);
       } else if (!letters.emplace(column.channel, i).second) {
         Fail("two columns are named " + Quoted(column) + "; remove one of them");
@@ -117,7 +179,7 @@ class LayoutBuilder {
     const bool has_xyz = letters.contains("X") && letters.contains("Z");
     if (letters.contains("Y") && !has_xyz) candidates.push_back({letters["Y"]});
     for (const char* triple : {"RGB", "XYZ"}) {
-      std::vector<std::size_t> found, missing;
+      std::vector<std::size_t> found;
       for (const char c : std::string_view(triple)) {
         if (letters.contains(std::string(1, c))) found.push_back(letters[std::string(1, c)]);
       }
@@ -132,32 +194,76 @@ class LayoutBuilder {
     if (candidates.size() != 1) {
       std::vector<std::string> names;
       for (const std::vector<std::size_t>& candidate : candidates) {
-        names.push_back(Excerpt(header_.columns[candidate[0]].name) + (candidate.size() > 1 ? "..." : ""));
+        names.push_back(Excerpt(columns_[candidate[0]].name) + (candidate.size() > 1 ? "..." : ""));
       }
-      if (candidates.empty()) {
-        Fail("no column holds values; allowed: " + AllowedColumns() + "; or choose one with --value-column");
+      if (!candidates.empty())
+        Fail("several columns can be the value: " + Excerpt(Join(names), 200) + "; choose one with --value-column");
+      const std::size_t other = FindOther();
+      if (other != kNoColumn) {
+        Fail("the column " + Quoted(columns_[other]) +
+             " can be f_r or pi f_r, or something else; say it with --value-column " + Excerpt(columns_[other].name) +
+             " and --value-kind f|pi-f");
       }
-      Fail("several columns can be the value: " + Excerpt(Join(names), 200) + "; choose one with --value-column");
+      Fail("no column holds values; allowed: " + AllowedColumns() + "; or choose one with --value-column");
     }
-    layout_.values = candidates[0];
-    for (const std::size_t i : layout_.values) {
-      const CsvColumn& column = header_.columns[i];
+    layout_.groups = {{{}, candidates[0]}};
+    for (const std::size_t i : candidates[0]) {
+      const CsvColumn& column = columns_[i];
       layout_.channels.names.push_back(column.role == ColumnRole::kChannel ? column.channel : "Y");
       if (column.wavelength_nm > 0) layout_.channels.wavelengths_nm.push_back(column.wavelength_nm);
     }
-    if (layout_.values.size() == 1) measurement_->conventions["value-column"] = header_.columns[layout_.values[0]].name;
+    if (candidates[0].size() == 1) measurement_->conventions["value-column"] = columns_[candidates[0][0]].name;
+  }
+
+  std::size_t FindOther() const {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (columns_[i].role == ColumnRole::kOtherValue && SplitName(columns_[i].name).words.size() < 3) return i;
+    }
+    return kNoColumn;
+  }
+
+  // The unit of a column that does not say it: what all of the first rows can be.
+  void FindWavelength() {
+    const bool stated = header_.keys.wavelength_nm.has_value();
+    layout_.by_wavelength = layout_.wavelength != kNoColumn ||
+                            (stated && layout_.channels.wavelengths_nm.empty() && layout_.channels.size() == 1);
+    if (layout_.wavelength == kNoColumn) return;
+    if (layout_.channels.size() != 1) {
+      Fail("a wavelength column goes with one column of values, but there are " +
+           std::to_string(layout_.channels.size()));
+    }
+    const CsvColumn& column = columns_[layout_.wavelength];
+    const char* origin = " (column name)";
+    if (header_.keys.wavelength_unit) {
+      layout_.wavelength_unit = *header_.keys.wavelength_unit;
+      origin = " (header)";
+    } else if (column.wavelength_unit) {
+      layout_.wavelength_unit = *column.wavelength_unit;
+    } else {
+      double largest = 0;
+      for (const std::vector<std::string>& row : header_.first_rows) {
+        const std::optional<double> number = layout_.wavelength < row.size()
+                                                 ? ParseCsvNumber(row[layout_.wavelength], header_.decimal_mark)
+                                                 : std::nullopt;
+        if (number) largest = std::max(largest, *number);
+      }
+      // Nanometres of an optical instrument have three digits or more, micrometres at most two before the point.
+      layout_.wavelength_unit = *ParseWavelengthUnit(largest < 1e-3 ? "m" : largest < 100 ? "um" : "nm");
+      origin = " (by the first rows)";
+    }
+    measurement_->conventions["wavelength-unit"] = std::string(layout_.wavelength_unit.name) + origin;
   }
 
   void FindUncertainties() {
     layout_.weight = FindOnly(ColumnRole::kWeight);
     std::map<std::string, std::size_t> by_channel;
-    for (std::size_t i = 0; i < header_.columns.size(); ++i) {
-      const CsvColumn& column = header_.columns[i];
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const CsvColumn& column = columns_[i];
       if (column.role == ColumnRole::kSigma && !by_channel.emplace(column.channel, i).second) {
         Fail("two columns are named " + Quoted(column) + "; remove one of them");
       }
     }
-    if (by_channel.empty()) return;
+    if (by_channel.empty() || layout_.groups.size() > 1) return;
     if (layout_.weight != kNoColumn) Fail("both weight and sigma columns are given; remove one of them");
     if (by_channel.contains("")) {
       layout_.sigma = by_channel[""];
@@ -172,20 +278,38 @@ class LayoutBuilder {
     }
   }
 
-  void CheckUnknownColumns() {
+  bool IsUsed(std::size_t i) const {
+    const auto is_value = [&](const ValueGroup& group) {
+      return std::find(group.values.begin(), group.values.end(), i) != group.values.end();
+    };
+    return std::any_of(layout_.groups.begin(), layout_.groups.end(), is_value) || i == layout_.sigma ||
+           i == layout_.weight || i == layout_.wavelength || i == layout_.polarisation ||
+           std::find(layout_.channel_sigmas.begin(), layout_.channel_sigmas.end(), i) != layout_.channel_sigmas.end() ||
+           std::any_of(layout_.filters.begin(), layout_.filters.end(),
+                       [&](const RowFilter& filter) { return filter.column == i; }) ||
+           std::any_of(layout_.coordinates.begin(), layout_.coordinates.end(),
+                       [&](const auto& entry) { return entry.second == i; });
+  }
+
+  void CheckColumns() {
     std::vector<std::string> ignored;
-    for (std::size_t i = 0; i < header_.columns.size(); ++i) {
-      const CsvColumn& column = header_.columns[i];
-      if (column.role == ColumnRole::kUnknown && chosen_ == kNoColumn) {
-        Fail("column " + std::to_string(i + 1) + " is named " + Quoted(column) + ", which is not known; allowed: " +
-             AllowedColumns() + "; or choose the column of values with --value-column, then unknown ones are ignored");
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const CsvColumn& column = columns_[i];
+      if (IsUsed(i)) {
+        if (!column.problem.empty() && !(options_.angle_unit && column.role == ColumnRole::kCoordinate) &&
+            !(IsValue(i) && HasValueScale())) {
+          Fail("column " + std::to_string(i + 1) + ", " + Quoted(column) + ", " + column.problem);
+        }
+        continue;
       }
-      const bool other_value = (column.role == ColumnRole::kValue || column.role == ColumnRole::kChannel) &&
-                               std::find(layout_.values.begin(), layout_.values.end(), i) == layout_.values.end();
-      if ((column.role == ColumnRole::kUnknown && i != chosen_) || column.role == ColumnRole::kIgnored ||
-          (column.role == ColumnRole::kOtherValue && i != chosen_) || other_value) {
-        ignored.push_back(Excerpt(column.name));
+      if (column.name.empty()) continue;
+      if (LooksLikeAngle(column) && !options_.value_column) {
+        Fail("column " + std::to_string(i + 1) + " is named " + Quoted(column) +
+             ", which speaks of an angle but is not known; allowed: " + AllowedColumns() +
+             "; or choose the column of values with --value-column, then unknown ones are ignored");
       }
+      ignored.push_back(Excerpt(column.name));
+      if (column.role == ColumnRole::kUnknown) layout_.unused.push_back(i);
     }
     if (ignored.size() > 8) {
       const std::string more = " and " + std::to_string(ignored.size() - 8) + " more";
@@ -195,29 +319,83 @@ class LayoutBuilder {
     if (!ignored.empty()) measurement_->remarks.push_back("columns not used: " + Join(ignored));
   }
 
+  bool IsValue(std::size_t i) const {
+    return std::any_of(layout_.groups.begin(), layout_.groups.end(), [&](const ValueGroup& group) {
+      return std::find(group.values.begin(), group.values.end(), i) != group.values.end();
+    });
+  }
+  bool HasValueScale() const { return !options_.value_scale.empty() || header_.keys.value_scale; }
+
   void SetValueKind() {
-    const std::optional<ValueKind> by_name = header_.columns[layout_.values[0]].value_kind;
+    const CsvColumn& column = columns_[layout_.groups[0].values[0]];
     std::string origin = "default";
-    layout_.value_kind = ValueKind::kBrdf;
     if (options_.value_kind) {
       layout_.value_kind = *options_.value_kind;
       origin = "option";
-    } else if (header_.value_kind) {
-      layout_.value_kind = *header_.value_kind;
+    } else if (header_.keys.value_kind) {
+      layout_.value_kind = *header_.keys.value_kind;
       origin = "header";
-    } else if (by_name) {
-      layout_.value_kind = *by_name;
+    } else if (column.value_kind) {
+      layout_.value_kind = *column.value_kind;
       origin = "column name";
     }
     measurement_->conventions["value-kind"] = std::string(Name(layout_.value_kind)) + " (" + origin + ")";
+    SetValueScale(column);
+  }
+
+  void SetValueScale(const CsvColumn& column) {
+    std::string origin, unit;
+    if (!options_.value_scale.empty()) {
+      const std::optional<ValueScale> scale = ParseValueScale(options_.value_scale);
+      if (!scale)
+        throw UsageError("--value-scale " + Excerpt(options_.value_scale) +
+                         ": allowed are 1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.");
+      layout_.value_scale = *scale;
+      unit = options_.value_scale;
+      origin = "option";
+    } else if (header_.keys.value_scale) {
+      layout_.value_scale = *header_.keys.value_scale;
+      origin = "header";
+    } else if (column.value_scale) {
+      layout_.value_scale = *column.value_scale;
+      unit = column.unit.empty() ? column.name : column.unit;
+      origin = "column name";
+    }
+    for (const ValueGroup& group : layout_.groups) {
+      for (const std::size_t i : group.values) {
+        const ValueScale other = columns_[i].value_scale.value_or(ValueScale{});
+        const ValueScale first = column.value_scale.value_or(ValueScale{});
+        if (other.form != first.form || other.factor != first.factor)
+          Fail("the columns " + Quoted(column) + " and " + Quoted(columns_[i]) +
+               " have different units; give all values in one");
+      }
+    }
+    if (layout_.value_scale.IsIdentity() && !layout_.value_scale.arbitrary) return;
+    measurement_->conventions["value-scale"] = Excerpt(unit.empty() ? "as stated" : unit) + " (" + origin + ")";
+    if (layout_.value_scale.arbitrary) {
+      measurement_->remarks.push_back("the values have no unit that is known (" + Excerpt(unit) +
+                                      "): their scale is not f_r in 1/sr; fit with --scale free");
+    }
+  }
+
+  void MarkNumbers() {
+    layout_.is_number.assign(columns_.size(), false);
+    for (std::size_t i = 0; i < columns_.size(); ++i) layout_.is_number[i] = IsUsed(i) && i != layout_.polarisation;
+    for (const RowFilter& filter : layout_.filters) {
+      const bool only_filtered = std::none_of(layout_.coordinates.begin(), layout_.coordinates.end(),
+                                              [&](const auto& entry) { return entry.second == filter.column; }) &&
+                                 !IsValue(filter.column) && filter.column != layout_.wavelength &&
+                                 filter.column != layout_.sigma && filter.column != layout_.weight;
+      if (only_filtered) layout_.is_number[filter.column] = false;
+    }
   }
 
   const InputFile& file_;
   const CsvHeader& header_;
   const ReadOptions& options_;
+  std::vector<CsvColumn> columns_;
   Measurement* measurement_;
   CsvLayout layout_;
-  std::size_t chosen_ = kNoColumn;
 };
 
 }  // namespace

@@ -1,9 +1,12 @@
-// Which column of a goniometer's CSV holds what: the names of the head, matched with the options.
+// Which column of a goniometer's CSV holds what: the names of the head, matched with the options and the first rows.
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "lobefit/io/csv/directions.h"
 #include "lobefit/io/csv/header.h"
 #include "lobefit/measurement/measurement.h"
 
@@ -11,16 +14,37 @@ namespace lobefit {
 
 inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
+// Columns of values that share their directions: all of them, or those at one angle of a table that has a column for
+// each angle.
+struct ValueGroup {
+  std::vector<std::pair<Coordinate, double>> fixed;
+  std::vector<std::size_t> values;
+};
+
+// A column of which only rows with this text are used.
+struct RowFilter {
+  std::size_t column = kNoColumn;
+  std::string word;
+};
+
 // Which field of a row holds what.
 struct CsvLayout {
-  std::size_t theta_i = kNoColumn, phi_i = kNoColumn, theta_o = kNoColumn, phi_o = kNoColumn, delta_phi = kNoColumn,
-              azimuth = kNoColumn;
-  std::size_t wavelength = kNoColumn, weight = kNoColumn, sigma = kNoColumn;
-  std::vector<std::size_t> values;
+  DirectionReader directions;
+  Coordinates fixed = {};                                       // coordinates that all rows share
+  std::vector<std::pair<Coordinate, std::size_t>> coordinates;  // and those of columns
+  std::size_t wavelength = kNoColumn, weight = kNoColumn, sigma = kNoColumn, polarisation = kNoColumn;
+  WavelengthUnit wavelength_unit;
+  bool by_wavelength = false;  // each row has a wavelength, its own or one stated in the head
+  std::vector<ValueGroup> groups;
   std::vector<std::size_t> channel_sigmas;  // one a channel, or empty
+  std::vector<std::size_t> unused;          // columns of unknown meaning
+  std::vector<RowFilter> filters;
   Channels channels;
   ValueKind value_kind = ValueKind::kBrdf;
-  std::vector<bool> is_read;  // one a column
+  ValueScale value_scale;
+  std::vector<bool> is_number;  // one a column: its number is needed
+
+  std::size_t ChannelCount() const { return channels.size(); }
 };
 
 // Throws InputError, which names the line, for a column that is missing, unknown, given twice or one of several that

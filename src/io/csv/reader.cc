@@ -1,374 +1,477 @@
-// Rows of a goniometer with named columns. What the columns mean: csv_columns.h; keys of the head: csv_header.h.
-//
-// Angles: polar from +z, azimuth counter-clockwise from +x seen from +z. A negative polar angle is the other side:
-// theta < 0 stands for |theta| at phi + 180 degrees. Without azimuths the rows lie in one plane with signed angles: the
-// light stands at azimuth 0 and the receiver on the mirror side, so that theta_o = theta_i is the specular direction
-// and theta_o = -theta_i the light's own. With azimuth, incidence and receive (three-axis instruments) the azimuth is
-// that of the receiver's plane, counted so that at 90 degrees a positive receive angle lies on the light's side; the
-// light is at azimuth 0, so phi_o = azimuth - 90 degrees.
+// Rows of a goniometer with named columns. What the columns mean: columns.h and layout.h; keys of the head: keys.h; how
+// their angles become directions: directions.h.
 #include "lobefit/io/csv/reader.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
-#include "lobefit/base/plain_decimal.h"
+#include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/distinctions.h"
 #include "lobefit/io/csv/header.h"
 #include "lobefit/io/csv/layout.h"
+#include "lobefit/io/csv/row_parser.h"
+#include "lobefit/io/csv/stated_angles.h"
 #include "lobefit/io/csv/wavelengths.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/measurement/noise.h"
+#include "lobefit/measurement/polarisation.h"
 #include "lobefit/measurement/repeats.h"
 
 namespace lobefit {
 namespace {
-
-// Sine and cosine of an angle in the file's unit; rows of a goniometer repeat their angles, so the last one is kept.
-class AngleCache {
- public:
-  explicit AngleCache(double radians_per_unit = 1) : scale_(radians_per_unit) {}
-
-  void Set(double angle) {
-    if (angle == angle_) return;
-    angle_ = angle;
-    const double radians = angle * scale_;
-    sin_ = std::sin(radians);
-    cos_ = std::cos(radians);
-  }
-  double sin() const { return sin_; }
-  double cos() const { return cos_; }
-
- private:
-  double scale_;
-  double angle_ = 0, sin_ = 0, cos_ = 1;
-};
 
 class CsvReader {
  public:
   CsvReader(const InputFile& file, const ReadOptions& options) : file_(file), options_(options) {}
 
   Measurement Read() {
-    header_ = ReadCsvHeader(file_);
-    Measurement notes;
-    layout_ = ReadCsvLayout(file_, header_, options_, &notes);
-    ChooseUnits(&notes);
-    if (layout_.wavelength != kNoColumn && layout_.values.size() != 1) {
-      FailAtLine(
-          file_, header_.names_line,
-          "a wavelength column goes with one column of values, but there are " + std::to_string(layout_.values.size()));
+    header_ = ReadCsvHeader(file_, options_.columns);
+    for (const std::string& key : options_.keys) {
+      if (!ReadKey(file_, header_.names_line, key, &header_.keys)) {
+        FailAtLine(
+            file_, header_.names_line,
+            "'" + Excerpt(key) +
+                "', given behind the file's name, is no key of a CSV; write it as in theta_i=30 or sample-rotation=30");
+      }
     }
-    if (layout_.wavelength != kNoColumn) {
+    notes_.remarks = header_.remarks;
+    layout_ = ReadCsvLayout(file_, header_, options_, &notes_);
+    at_ = layout_.fixed;
+    ranges_.assign(layout_.coordinates.size(),
+                   {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
+    repeated_ = options_.repeated.value_or(ParseRepeatedRows(header_.keys.repeated).value_or(RepeatedRows::kFirst));
+    if (layout_.by_wavelength) {
       by_wavelength_.emplace(HasSigmas()    ? WavelengthTable::Weights::kSigma
                              : HasWeights() ? WavelengthTable::Weights::kWeight
-                                            : WavelengthTable::Weights::kNone,
-                             options_.repeated == RepeatedRows::kMean);
+                                            : WavelengthTable::Weights::kNone);
     }
     MeasurementBuilder builder(layout_.channels);
-    fields_.resize(header_.columns.size());
     ReadRows(&builder);
+    AddRemarks();
     if (by_wavelength_) {
-      MeasurementBuilder pivoted(by_wavelength_->ChannelNames());
-      pivoted.measurement().set_aside = builder.measurement().set_aside;
-      by_wavelength_->MoveTo(&pivoted);
-      return Finish(&pivoted, notes);
+      Measurement gathered;
+      WithPath([&] { gathered = by_wavelength_->Gather(repeated_ == RepeatedRows::kMean); });
+      for (int r = 0; r < kSetAsideReasons; ++r) {
+        const auto reason = static_cast<SetAsideReason>(r);
+        gathered.set_aside.Add(reason, builder.measurement().set_aside[reason]);
+      }
+      if (gathered.channels.size() < by_wavelength_->wavelengths()) {
+        notes_.remarks.push_back(std::to_string(by_wavelength_->wavelengths()) +
+                                 " wavelengths that wander by less than half of their spacing are " +
+                                 std::to_string(gathered.channels.size()) + " channel" +
+                                 (gathered.channels.size() == 1 ? "" : "s"));
+      }
+      builder.measurement() = std::move(gathered);
     }
-    return Finish(&builder, notes);
+    return Finish(&builder);
   }
 
  private:
-  Measurement Finish(MeasurementBuilder* builder, const Measurement& notes) const {
-    std::vector<std::string> remarks = notes.remarks;
+  Measurement Finish(MeasurementBuilder* builder) {
+    if (!polarisations_.empty()) WithPath([&] { AveragePolarisations(&builder->measurement()); });
     Samples& rows = builder->measurement().samples;
-    if (options_.repeated == RepeatedRows::kMean) {
+    if (repeated_ == RepeatedRows::kMean) {
       // The spread of the repetitions stands for the stated uncertainty.
       if (HasSigmas()) rows.weight.clear();
       const Repeats repeats = MergeRepeated(&builder->measurement());
-      remarks.push_back(std::to_string(repeats.samples) + " repeated rows were merged to " +
-                        std::to_string(repeats.pairs) + "; a row scatters by " +
-                        FormatDouble(std::round(1000 * repeats.relative_spread) / 10) + " % of its mean");
+      notes_.remarks.push_back(std::to_string(repeats.samples) + " repeated rows were merged to " +
+                               std::to_string(repeats.pairs) + "; a row scatters by " +
+                               FormatDouble(std::round(1000 * repeats.relative_spread) / 10) + " % of its mean");
     }
     Measurement measurement = builder->Finish();
-    if (HasSigmas() && options_.repeated == RepeatedRows::kFirst) {
-      const std::vector<double> sigma = std::exchange(measurement.samples.weight, {});
-      AddSigma(sigma, &measurement.samples);
+    if (HasSigmas() && repeated_ == RepeatedRows::kFirst) {
+      std::vector<double> sigma = std::exchange(measurement.samples.weight, {});
+      FillUnknown(&sigma);
+      if (!sigma.empty()) AddSigma(sigma, &measurement.samples);
     }
     if (measurement.set_aside[SetAsideReason::kDuplicate] > 0) {
-      remarks.emplace_back("directions occur again; --repeated mean averages their rows instead of keeping the first");
+      const std::string distinctions = DescribeDistinctions(file_, header_, layout_);
+      notes_.remarks.push_back(
+          distinctions.empty()
+              ? "directions occur again; --repeated mean averages their rows instead of keeping the first"
+              : distinctions);
     }
-    measurement.conventions = notes.conventions;
-    measurement.conventions["repeated"] =
-        options_.repeated == RepeatedRows::kMean ? "mean (option)" : "first (default)";
-    measurement.remarks = std::move(remarks);
-    measurement.isotropic = layout_.delta_phi != kNoColumn && layout_.phi_i == kNoColumn;
+    measurement.conventions = notes_.conventions;
+    measurement.conventions["repeated"] = Name(repeated_) + (options_.repeated               ? " (option)"
+                                                             : header_.keys.repeated.empty() ? " (default)"
+                                                                                             : " (header)");
+    if (!header_.keys.exclude.empty()) measurement.conventions["exclude"] = header_.keys.exclude;
+    measurement.remarks = std::move(notes_.remarks);
+    measurement.isotropic = layout_.directions.IsIsotropic();
+    for (std::string& remark : FindImplausibleAngles(StateAngles(), rows_))
+      measurement.remarks.push_back(std::move(remark));
     ScaleToMeanOne(&measurement.samples.weight);
     return measurement;
   }
 
-  void ChooseUnits(Measurement* notes) {
-    AngleUnit default_unit = AngleUnit::kDegrees;
-    std::string origin = "default";
-    if (header_.angle_unit) {
-      default_unit = *header_.angle_unit;
-      origin = "header";
+  // What rows have in common is judged where no file is known.
+  template <class Function>
+  void WithPath(Function&& function) const {
+    try {
+      function();
+    } catch (const InputError& error) {
+      throw InputError(file_.path.string() + ": " + error.what());
     }
-    if (options_.angle_unit) {
-      default_unit = *options_.angle_unit;
-      origin = "option";
-    }
-    bool by_name = false;
-    const auto cache_for = [&](std::size_t column) {
-      AngleUnit unit = default_unit;
-      if (column != kNoColumn && header_.columns[column].angle_unit && !options_.angle_unit) {
-        unit = *header_.columns[column].angle_unit;
-        by_name = true;
-      }
-      return AngleCache(unit == AngleUnit::kDegrees ? kPi / 180 : 1.0);
-    };
-    theta_i_ = cache_for(layout_.theta_i);
-    theta_o_ = cache_for(layout_.theta_o);
-    phi_i_ = cache_for(layout_.phi_i);
-    phi_o_ = cache_for(layout_.phi_o != kNoColumn       ? layout_.phi_o
-                       : layout_.delta_phi != kNoColumn ? layout_.delta_phi
-                                                        : layout_.azimuth);
-    notes->conventions["angle-unit"] =
-        by_name ? "by column names" : std::string(Name(default_unit)) + " (" + origin + ")";
-
-    const IncidentSense sense =
-        options_.incident_sense.value_or(header_.incident_sense.value_or(IncidentSense::kTowardsSource));
-    flip_incident_ = sense == IncidentSense::kPropagation;
-    notes->conventions["incident"] = std::string(Name(sense)) + (options_.incident_sense  ? " (option)"
-                                                                 : header_.incident_sense ? " (header)"
-                                                                                          : " (default)");
-    if (layout_.phi_i == kNoColumn && layout_.phi_o == kNoColumn && layout_.delta_phi == kNoColumn) {
-      notes->conventions["azimuths"] = layout_.azimuth == kNoColumn
-                                           ? "one plane: theta_o = theta_i is the mirror direction"
-                                           : "phi_i = 0, phi_o = azimuth - 90 deg";
-    }
-    if (layout_.wavelength != kNoColumn) {
-      notes->conventions["wavelength-unit"] = header_.nm_per_wavelength_unit ? "by header" : "nm, below 100: um";
-    }
-  }
-
-  // Fills fields_ with the numbers of the columns that are read.
-  void ParseRow(std::string_view line, std::size_t line_number) {
-    std::size_t column = 0;
-    const auto take = [&](std::string_view field) {
-      if (column < fields_.size() && layout_.is_read[column]) {
-        const std::optional<double> number = ParseDouble(field);
-        if (!number) FailAtField(line_number, column, field);
-        fields_[column] = *number;
-      }
-      ++column;
-    };
-    if (header_.separator == kBlankSeparator) {
-      for (const std::string_view field : SplitBlanks(line)) take(field);
-    } else {
-      std::size_t begin = 0;
-      while (true) {
-        // Most fields are plain numbers that fill their field: one pass over the characters.
-        std::size_t length = 0;
-        std::optional<double> plain;
-        if (column < fields_.size() && layout_.is_read[column]) plain = ParsePlainDecimal(line.substr(begin), &length);
-        std::size_t end = begin + length;
-        if (plain && (end == line.size() || line[end] == header_.separator)) {
-          fields_[column++] = *plain;
-          if (end == line.size()) break;
-        } else {
-          end = line.find(header_.separator, begin);
-          take(line.substr(begin, end - begin));
-          if (end == std::string_view::npos) break;
-        }
-        begin = end + 1;
-      }
-    }
-    if (column != fields_.size()) {
-      FailAtLine(file_, line_number,
-                 "has " + std::to_string(column) + " fields; line " + std::to_string(header_.names_line) + " names " +
-                     std::to_string(fields_.size()) + " columns" +
-                     (header_.separator == ',' && column > fields_.size()
-                          ? " (with decimal commas, separate the fields by semicolons and write decimal points)"
-                          : ""));
-    }
-  }
-
-  [[noreturn]] void FailAtField(std::size_t line_number, std::size_t column, std::string_view field) const {
-    std::string what = "column " + std::to_string(column + 1) + " (" + Excerpt(header_.columns[column].name) + ") ";
-    if (Trim(field).empty()) {
-      what += "is empty; write a number, or nan for a value that was not measured";
-    } else {
-      what += "is '" + Excerpt(Trim(field)) + "', which is not a number";
-      if (field.find(',') != std::string_view::npos) what += "; write a decimal point instead of a comma";
-    }
-    FailAtLine(file_, line_number, what);
   }
 
   void ReadRows(MeasurementBuilder* builder) {
-    LineReader lines(file_.bytes);
+    RowParser parser(file_, header_, layout_,
+                     NoValues(options_.no_value.empty() ? header_.keys.no_value : options_.no_value));
+    CsvLines lines(file_.bytes);
     std::string_view line;
     while (lines.Next(&line)) {
       const std::size_t number = lines.line_number();
       if (number < header_.first_data_line || line.empty()) continue;
       const bool may_be_special = line[0] <= '/';  // blank, tab, '#', '%' or "//"
-      if (may_be_special && (Trim(line).empty() || IsComment(line))) continue;
+      if (may_be_special && (Trim(line).empty() || IsComment(line))) {
+        if (line[0] != '-' && IsComment(line)) ReadKeyAmidRows(number, CommentText(line), {});
+        continue;
+      }
       if (builder->measurement().samples.origin.capacity() == 0) Reserve(line.size(), builder);
-      ParseRow(line, number);
-      AddRow(static_cast<std::uint32_t>(number), builder);
+      switch (parser.Parse(line, number)) {
+        case RowParser::Kind::kBlank:
+          continue;
+        case RowParser::Kind::kWords:
+          TakeWords(line, number, parser);
+          continue;
+        case RowParser::Kind::kRow:
+          break;
+      }
+      if (!words_message_.empty()) FailAtLine(file_, words_line_, words_message_);
+      AddRow(parser, static_cast<std::uint32_t>(number), builder);
+    }
+    if (!words_message_.empty()) {
+      notes_.remarks.push_back(std::to_string(words_) + (words_ == 1 ? " line" : " lines") +
+                               " after the last row, from line " + std::to_string(words_line_) + " on, hold no row: '" +
+                               words_text_ + "'");
     }
   }
 
+  // The names again, where files were joined; a key of the rows that follow; else a footer, unless rows come after it.
+  void TakeWords(std::string_view line, std::size_t number, const RowParser& parser) {
+    if (Trim(line) == Trim(header_.names)) return;
+    std::vector<std::string_view> fields;
+    SplitCsvLine(line, header_.separator, &fields);
+    if (ReadKeyAmidRows(number, {}, fields)) return;
+    ++words_;
+    if (!words_message_.empty()) return;
+    words_line_ = number;
+    words_message_ = parser.WordsMessage();
+    words_text_ = Excerpt(Trim(line));
+  }
+
+  bool ReadKeyAmidRows(std::size_t number, std::string_view comment, const std::vector<std::string_view>& fields) {
+    if (!comment.empty() && comment.find_first_of(":=") == std::string_view::npos) return false;
+    CsvKeys keys = header_.keys;
+    if (!(fields.empty() ? ReadKey(file_, number, comment, &keys) : ReadKey(file_, number, fields, &keys)))
+      return false;
+    RequireSameUnits(file_, number, header_.keys, keys);
+    for (const FixedCoordinate& fixed : keys.fixed) {
+      const FixedCoordinate* before = header_.keys.Find(fixed.coordinate);
+      if (before == nullptr) {
+        if (layout_.directions.Has(fixed.coordinate)) continue;
+        FailAtLine(file_, number,
+                   "an angle is stated here that the rows before lack; state it in the head too, or put the parts into "
+                   "files of their own");
+      }
+      if (before->unit != fixed.unit)
+        FailAtLine(file_, number, "an angle is stated in another unit than before; use one unit");
+      at_[static_cast<std::size_t>(fixed.coordinate)] = fixed.number;
+    }
+    if (keys.wavelength_nm && !header_.keys.wavelength_nm && !layout_.by_wavelength) {
+      FailAtLine(file_, number, "a wavelength is stated here that the rows before lack; state it in the head too");
+    }
+    header_.keys = std::move(keys);
+    return true;
+  }
+
   void Reserve(std::size_t line_size, MeasurementBuilder* builder) const {
-    const std::size_t rows = file_.bytes.size() / (line_size + 1) + 1;
+    if (by_wavelength_) return;
+    const std::size_t rows = (file_.bytes.size() / (line_size + 1) + 1) * layout_.groups.size();
     Samples& samples = builder->measurement().samples;
     for (std::vector<double>* array :
-         {&samples.wi_x, &samples.wi_y, &samples.wi_z, &samples.wo_x, &samples.wo_y, &samples.wo_z}) {
+         {&samples.wi_x, &samples.wi_y, &samples.wi_z, &samples.wo_x, &samples.wo_y, &samples.wo_z})
       array->reserve(rows);
-    }
     for (std::vector<double>& array : samples.values) array.reserve(rows);
     samples.origin.reserve(rows);
   }
 
-  // A polar angle and an azimuth; the polar angle's sine carries its sign, which is the other side's azimuth.
-  static Vec3 Direction(const AngleCache& theta, const AngleCache& phi) {
-    return {theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()};
+  bool PassesFilters(const RowParser& row) const {
+    return std::all_of(layout_.filters.begin(), layout_.filters.end(), [&](const RowFilter& filter) {
+      const std::string_view text = row.Text(filter.column);
+      if (ToLower(Trim(text)) == filter.word) return true;
+      const std::optional<double> number = ParseCsvNumber(text, header_.decimal_mark),
+                                  wanted = ParseDouble(filter.word);
+      return number && wanted && *number == *wanted;
+    });
   }
 
-  bool SetDirections(Vec3* wi, Vec3* wo) {
-    theta_i_.Set(fields_[layout_.theta_i]);
-    theta_o_.Set(fields_[layout_.theta_o]);
-    if (layout_.phi_i != kNoColumn) phi_i_.Set(fields_[layout_.phi_i]);
-    *wi = Direction(theta_i_, phi_i_);
-    if (layout_.phi_o != kNoColumn) {
-      phi_o_.Set(fields_[layout_.phi_o]);
-      *wo = Direction(theta_o_, phi_o_);
-    } else if (layout_.delta_phi != kNoColumn) {
-      phi_o_.Set(fields_[layout_.delta_phi]);
-      *wo = Turned(Direction(theta_o_, phi_o_), phi_i_.cos(), phi_i_.sin());
-    } else if (layout_.azimuth != kNoColumn) {
-      phi_o_.Set(fields_[layout_.azimuth]);
-      const Vec3 in_receiver_plane = Direction(theta_o_, phi_o_);
-      *wo = Turned(in_receiver_plane, 0, -1);
-    } else {
-      *wo = {-theta_o_.sin() * phi_i_.cos(), -theta_o_.sin() * phi_i_.sin(), theta_o_.cos()};
+  void AddRow(const RowParser& row, std::uint32_t line, MeasurementBuilder* builder) {
+    if (!layout_.filters.empty() && !PassesFilters(row)) {
+      builder->Skip(SetAsideReason::kOutsideSelection, layout_.groups.size());
+      return;
     }
-    if (flip_incident_) *wi = {-wi->x, -wi->y, std::fabs(wi->z)};
-    if (header_.sample_rotation != 0) {
-      const double c = std::cos(header_.sample_rotation), s = -std::sin(header_.sample_rotation);
-      *wi = Turned(*wi, c, s);
-      *wo = Turned(*wo, c, s);
+    for (const auto& [coordinate, column] : layout_.coordinates)
+      at_[static_cast<std::size_t>(coordinate)] = row.Number(column);
+    ++rows_;
+    for (std::size_t k = 0; k < ranges_.size(); ++k) {
+      const double number = row.Number(layout_.coordinates[k].second);
+      ranges_[k].first = std::min(ranges_[k].first, number);
+      ranges_[k].second = std::max(ranges_[k].second, number);
     }
-    return std::isfinite(wi->x + wi->y + wi->z + wo->x + wo->y + wo->z);
+    if (!row.marks().empty()) NoteMarks(row, line);
+    for (const ValueGroup& group : layout_.groups) {
+      for (const auto& [coordinate, number] : group.fixed) at_[static_cast<std::size_t>(coordinate)] = number;
+      AddSample(row, group, line, builder);
+    }
   }
 
-  static Vec3 Turned(const Vec3& w, double cos_angle, double sin_angle) {
-    return {cos_angle * w.x - sin_angle * w.y, sin_angle * w.x + cos_angle * w.y, w.z};
-  }
-
-  void AddRow(std::uint32_t line, MeasurementBuilder* builder) {
+  void AddSample(const RowParser& row, const ValueGroup& group, std::uint32_t line, MeasurementBuilder* builder) {
     Vec3 wi, wo;
-    if (!SetDirections(&wi, &wo)) {
+    if (!layout_.directions.Directions(at_, &wi, &wo)) {
       builder->Skip(SetAsideReason::kNotFinite);
       return;
     }
-    if (!(wi.z > 1e-9) || !(wo.z > 1e-9)) {
+    if (!IsAboveHorizon(wi) || !IsAboveHorizon(wo)) {
       builder->Skip(SetAsideReason::kBelowHorizon);
       return;
     }
     const double factor = BrdfFactor(layout_.value_kind, wi.z, wo.z);
-    values_.resize(layout_.values.size());
-    for (std::size_t c = 0; c < values_.size(); ++c) values_[c] = factor * fields_[layout_.values[c]];
+    values_.resize(group.values.size());
+    const bool plain = layout_.value_scale.IsIdentity();
+    bool any = false;
+    for (std::size_t c = 0; c < values_.size(); ++c) {
+      const double number = row.Number(group.values[c]);
+      values_[c] = factor * (plain ? number : layout_.value_scale.Apply(number));
+      any = any || !std::isnan(number);
+    }
+    if (!any && !row.marks().empty()) {
+      builder->Skip(SetAsideReason::kHole);
+      return;
+    }
     double weight = 1;
-    if (!WeightOfRow(line, factor, &weight)) {
+    if (HasWeights() && !WeightOfRow(row, group, line, factor, &weight)) {
       builder->Skip(SetAsideReason::kFlagged);
       return;
     }
     if (by_wavelength_) {
-      AddWavelength({wi, wo, 0, values_[0], weight, line}, builder);
-      return;
-    }
-    if (builder->Add(wi, wo, values_.data(), line) && HasWeights()) {
-      builder->measurement().samples.weight.push_back(weight);
+      AddWavelength(row, {wi, wo, 0, values_[0], weight, line}, builder);
+    } else if (builder->Add(wi, wo, values_.data(), line)) {
+      if (HasWeights()) builder->measurement().samples.weight.push_back(weight);
+      if (layout_.polarisation != kNoColumn)
+        polarisations_.push_back(NumberOfPolarisation(row.Text(layout_.polarisation)));
     }
   }
 
-  void AddWavelength(WavelengthTable::Row row, MeasurementBuilder* builder) {
-    const double number = fields_[layout_.wavelength];
-    if (!std::isfinite(number) || number <= 0) {
-      FailAtLine(file_, row.line, "the wavelength is " + FormatDouble(number) + "; it must be positive");
+  void AddWavelength(const RowParser& row, WavelengthTable::Row sample, MeasurementBuilder* builder) {
+    if (layout_.polarisation != kNoColumn) {
+      FailAtLine(
+          file_, sample.line,
+          "rows with a wavelength of their own differ in polarisation too; choose one with --where, as in --where " +
+              Excerpt(header_.columns[layout_.polarisation].name) + "=" + Excerpt(row.Text(layout_.polarisation)));
     }
-    // Nanometres of an optical instrument have three digits or more, micrometres at most two before the point.
-    const double nm = number * header_.nm_per_wavelength_unit.value_or(number < 100 ? 1000.0 : 1.0);
-    row.nm = std::round(nm * 1e6) / 1e6;
-    if (!std::isfinite(row.value)) {
+    if (layout_.wavelength == kNoColumn) {
+      sample.nm = *header_.keys.wavelength_nm;
+    } else {
+      const double number = row.Number(layout_.wavelength);
+      if (!std::isfinite(number) || number <= 0)
+        FailAtLine(file_, sample.line, "the wavelength is " + FormatDouble(number) + "; it must be positive");
+      sample.nm = std::round(layout_.wavelength_unit.ToNm(number) * 1e6) / 1e6;
+    }
+    if (std::isinf(sample.value)) {
       builder->Skip(SetAsideReason::kNotFinite);
-    } else if (!by_wavelength_->Add(row)) {
-      builder->Skip(SetAsideReason::kDuplicate);
+    } else {
+      by_wavelength_->Add(sample);
     }
   }
 
   bool HasSigmas() const { return layout_.sigma != kNoColumn || !layout_.channel_sigmas.empty(); }
   bool HasWeights() const { return layout_.weight != kNoColumn || HasSigmas(); }
 
-  // The row's weight, or the standard deviation of its f_r (root mean square over the channels), which takes the
-  // weight's place until all rows are known. False where the file gives the row no weight.
-  bool WeightOfRow(std::size_t line, double factor, double* weight) const {
-    if (!HasWeights()) return true;
+  // The row's weight, or the standard deviation of its f_r (root mean square over the channels; NaN where it is not
+  // known), which takes the weight's place until all rows are known. False where the file gives the row no weight.
+  bool WeightOfRow(const RowParser& row, const ValueGroup& group, std::size_t line, double factor,
+                   double* weight) const {
     if (layout_.weight != kNoColumn) {
-      *weight = fields_[layout_.weight];
+      *weight = row.Number(layout_.weight);
       if (*weight == 0) return false;
       if (!(*weight >= 1e-100 && *weight <= 1e100)) {
         FailAtLine(file_, line, "the weight is " + FormatDouble(*weight) + "; it must be 0, or 1e-100 to 1e100");
       }
       return true;
     }
-    double variance = 0;
-    const auto add = [&](std::size_t column) {
-      const double sigma = fields_[column];
-      if (!(sigma > 0) || std::isinf(sigma)) {
+    double variance = 0, count = 0;
+    const auto add = [&](std::size_t column, std::size_t value_column) {
+      const double number = row.Number(column);
+      if (number < 0 || std::isinf(number)) {
         FailAtLine(file_, line,
-                   "the standard deviation in column " + std::to_string(column + 1) + " is " + FormatDouble(sigma) +
+                   "the standard deviation in column " + std::to_string(column + 1) + " is " + FormatDouble(number) +
                        "; it must be more than 0");
       }
+      const double sigma = StandardDeviation(header_.columns[column], number, row.Number(value_column));
+      if (!(sigma > 0)) return;  // 0 and no value: not known
       variance += sigma * sigma;
+      ++count;
     };
-    if (layout_.sigma != kNoColumn) add(layout_.sigma);
-    for (const std::size_t column : layout_.channel_sigmas) add(column);
-    const double count = layout_.sigma != kNoColumn ? 1.0 : static_cast<double>(layout_.channel_sigmas.size());
-    *weight = factor * std::sqrt(variance / count);
+    if (layout_.sigma != kNoColumn) add(layout_.sigma, group.values[0]);
+    for (std::size_t c = 0; c < layout_.channel_sigmas.size(); ++c) add(layout_.channel_sigmas[c], group.values[c]);
+    *weight = count > 0 ? factor * std::sqrt(variance / count) : std::nan("");
     return true;
   }
+
+  // Of the value before the cosines, from what the column says about its numbers.
+  double StandardDeviation(const CsvColumn& column, double number, double value) const {
+    number = (column.variance ? std::sqrt(number) : number) / column.coverage_factor;
+    const bool percent = column.unit == "%" || column.unit == "percent";
+    const bool in_units_of_value =
+        percent && layout_.value_scale.factor == 0.01 && ToLower(column.name).find("rel") == std::string::npos;
+    if (column.relative && !in_units_of_value)
+      return (percent ? 0.01 : 1) * number * std::fabs(layout_.value_scale.Apply(value));
+    const std::optional<ValueScale> own =
+        column.unit.empty() || in_units_of_value ? std::nullopt : ParseValueScale(column.unit);
+    if (own && own->form == ValueScale::Form::kLinear && layout_.value_scale.form == ValueScale::Form::kLinear)
+      return own->factor * number;
+    return std::fabs(layout_.value_scale.Slope(value)) * number;
+  }
+
+  // A sample without an uncertainty gets the middle one of the others.
+  void FillUnknown(std::vector<double>* sigma) {
+    std::vector<double> known;
+    for (const double s : *sigma) {
+      if (!std::isnan(s)) known.push_back(s);
+    }
+    if (known.size() == sigma->size()) return;
+    notes_.remarks.push_back(std::to_string(sigma->size() - known.size()) + " samples have no uncertainty" +
+                             (known.empty() ? "; none was used" : "; the median of the others stands for it"));
+    if (known.empty()) {
+      sigma->clear();
+      return;
+    }
+    std::nth_element(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2), known.end());
+    for (double& s : *sigma) {
+      if (std::isnan(s)) s = known[known.size() / 2];
+    }
+  }
+
+  void NoteMarks(const RowParser& row, std::uint32_t line) {
+    for (const auto& [column, word] : row.marks()) {
+      const std::string text = Excerpt(word);
+      auto known = std::find_if(marks_.begin(), marks_.end(), [&](const Mark& mark) { return mark.word == text; });
+      if (known == marks_.end()) {
+        if (marks_.size() >= kMostMarks) {
+          ++other_marks_;
+          continue;
+        }
+        known = marks_.insert(marks_.end(), {text, line, 0});
+      }
+      ++known->count;
+    }
+  }
+
+  void AddRemarks() {
+    for (const Mark& mark : marks_) {
+      notes_.remarks.push_back(std::to_string(mark.count) + (mark.count == 1 ? " field" : " fields") +
+                               " without a number: " + (mark.word.empty() ? "empty" : "'" + mark.word + "'") +
+                               ", first in line " + std::to_string(mark.line));
+    }
+    if (other_marks_ > 0)
+      notes_.remarks.push_back(std::to_string(other_marks_) + " more fields without a number, of other words");
+  }
+
+  std::uint8_t NumberOfPolarisation(std::string_view text) {
+    const std::string word = ToLower(Trim(text));
+    for (std::size_t i = 0; i < polarisation_names_.size(); ++i) {
+      if (polarisation_names_[i] == word) return static_cast<std::uint8_t>(i);
+    }
+    if (polarisation_names_.size() >= 200)
+      FailAtLine(file_, header_.names_line,
+                 "the column of polarisations holds more than 200 different words; choose one with --where");
+    polarisation_names_.push_back(word);
+    return static_cast<std::uint8_t>(polarisation_names_.size() - 1);
+  }
+
+  void AveragePolarisations(Measurement* measurement) {
+    const std::string column = Excerpt(header_.columns[layout_.polarisation].name);
+    const std::string remark = AverageOverPolarisation(polarisations_, polarisation_names_, measurement);
+    if (!remark.empty())
+      notes_.remarks.push_back(remark + "; --where " + column + "=" + Excerpt(polarisation_names_[0]) + " chooses one");
+  }
+
+  // For the check of conventions: how far the angles reach, whatever directions they gave.
+  StatedAngles StateAngles() const {
+    StatedAngles stated;
+    static constexpr std::array<std::pair<Coordinate, const char*>, 5> kNames = {{{Coordinate::kThetaI, "theta_i"},
+                                                                                  {Coordinate::kPhiI, "phi_i"},
+                                                                                  {Coordinate::kThetaO, "theta_o"},
+                                                                                  {Coordinate::kPhiO, "phi_o"},
+                                                                                  {Coordinate::kDeltaPhi, "dphi"}}};
+    for (const auto& [coordinate, name] : kNames) {
+      if (!layout_.directions.Has(coordinate)) continue;
+      const double degrees = RadiansToDegrees(layout_.directions.RadiansPerUnit(coordinate));
+      std::pair<double, double> range(at_[static_cast<std::size_t>(coordinate)],
+                                      at_[static_cast<std::size_t>(coordinate)]);
+      for (std::size_t k = 0; k < ranges_.size(); ++k) {
+        if (layout_.coordinates[k].first == coordinate) range = ranges_[k];
+      }
+      stated[name] = {degrees * range.first, degrees * range.second};
+    }
+    return stated;
+  }
+
+  struct Mark {
+    std::string word;
+    std::uint32_t line = 0;
+    std::size_t count = 0;
+  };
+  static constexpr std::size_t kMostMarks = 6;
 
   const InputFile& file_;
   const ReadOptions& options_;
   CsvHeader header_;
   CsvLayout layout_;
-  bool flip_incident_ = false;
-  AngleCache theta_i_, phi_i_, theta_o_, phi_o_;
-  std::vector<double> fields_, values_;
-  std::optional<WavelengthTable> by_wavelength_;  // where a column holds the wavelength
+  Measurement notes_;
+  RepeatedRows repeated_ = RepeatedRows::kFirst;
+  Coordinates at_ = {};
+  std::vector<std::pair<double, double>> ranges_;  // of the coordinates that columns give, in the file's units
+  std::vector<double> values_;
+  std::optional<WavelengthTable> by_wavelength_;  // where rows have wavelengths of their own
+  std::vector<Mark> marks_;
+  std::size_t other_marks_ = 0;
+  std::size_t rows_ = 0, words_ = 0, words_line_ = 0;
+  std::string words_message_, words_text_;
+  std::vector<std::uint8_t> polarisations_;  // one a sample
+  std::vector<std::string> polarisation_names_;
 };
 
 }  // namespace
 
 bool IsCsv(std::string_view bytes) {
-  LineReader lines(bytes.substr(0, 1 << 16));
+  CsvLines lines(bytes.substr(0, 1 << 16));
   std::string_view line;
+  bool separators = false;
   while (lines.Next(&line)) {
     for (const char c : line) {
       const auto byte = static_cast<unsigned char>(c);
-      if (byte < 0x20 && byte != '\t') return false;
+      if (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') return false;
     }
     if (Trim(line).empty() || IsComment(line)) continue;
-    if (line.find_first_of(",;\t") != std::string_view::npos) return true;
-    // Words between blanks are prose, unless they are numbers or one of them is a column's name.
-    bool numbers = true, named = false;
+    separators = separators || line.find_first_of(",;\t|") != std::string_view::npos;
+    if (separators) return true;
+    // Words between blanks are prose, unless they are numbers or two of them name columns.
+    std::size_t numbers = 0, named = 0;
     const std::vector<std::string_view> words = SplitBlanks(line);
     for (const std::string_view word : words) {
-      numbers = numbers && ParseDouble(word).has_value();
-      named = named || ClassifyColumn(word).role == ColumnRole::kThetaI;
+      numbers += ParseDouble(word).has_value() ? 1 : 0;
+      const CsvColumn column = ClassifyColumn(word);
+      named += column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kValue ? 1 : 0;
     }
-    return words.size() >= 3 && (numbers || named);
+    if (words.size() >= 2 && (numbers == words.size() || named >= 2)) return true;
   }
   return false;
 }

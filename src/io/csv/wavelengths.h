@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "lobefit/measurement/measurement.h"
@@ -16,40 +17,47 @@ class WavelengthTable {
   struct Row {
     Vec3 wi, wo;
     double nm = 0;
-    double value = 0;  // f_r
+    double value = 0;  // f_r; NaN where it has no value
     double weight = 1;
     std::uint32_t line = 0;
   };
   enum class Weights { kNone, kWeight, kSigma };
 
-  // With keep_repeats, a wavelength that a pair of directions has already opens a further sample of that pair; without,
-  // Add returns false for it.
-  WavelengthTable(Weights weights, bool keep_repeats) : weights_(weights), keep_repeats_(keep_repeats) {}
+  explicit WavelengthTable(Weights weights) : weights_(weights) {}
 
-  bool Add(const Row& row);
+  void Add(const Row& row);
+  std::size_t wavelengths() const { return numbers_.size(); }
 
-  // Wavelengths in ascending order.
-  Channels ChannelNames() const;
-
-  // Samples that lack a wavelength are counted as holes. A sample weighs as much as the mean of its rows; standard
-  // deviations are averaged in the square.
-  void MoveTo(MeasurementBuilder* builder) const;
+  // One sample a pair of directions, with NaN where it lacks a wavelength. A wavelength that a pair has already opens a
+  // further sample of that pair with `keep_repeats`, else it is counted as a duplicate. A sample weighs as much as the
+  // mean of its rows; standard deviations are averaged in the square.
+  //
+  // A lamp's wavelength that wanders from row to row is one channel: wavelengths within less than half of the distance
+  // to their neighbours, and within a hundredth of themselves, become their mean, unless a pair of directions has two
+  // of them. Throws InputError where wavelengths times pairs are more than 2^28 values.
+  Measurement Gather(bool keep_repeats) const;
 
  private:
-  struct Sample {
+  struct Entry {
+    std::uint32_t pair = 0, wavelength = 0, line = 0;
+    double value = 0, weight = 1;
+  };
+  struct Pair {
     Vec3 wi, wo;
-    std::uint32_t line = 0;
-    std::uint32_t rows = 0;
-    double weights = 0;             // sum over the rows, of squares for standard deviations
-    std::uint32_t next_repeat = 0;  // index of the pair's next sample, 0: none
   };
 
+  // Channel of each wavelength, by its number, and the channels' wavelengths in ascending order.
+  struct Grouping {
+    std::vector<std::uint32_t> channel;
+    std::vector<double> nm;
+  };
+  Grouping Apart() const;
+  std::optional<Grouping> Wandering() const;
+
   Weights weights_;
-  bool keep_repeats_;
-  std::map<double, std::size_t> channels_;  // nanometres -> index into columns_
-  std::vector<std::vector<double>> columns_;
-  std::vector<Sample> samples_;
-  std::vector<std::uint32_t> first_sample_;  // one a pair
+  std::map<double, std::uint32_t> numbers_;  // nanometres -> in the order of their first rows
+  std::vector<Entry> entries_;
+  std::vector<Pair> pair_directions_;
   PairIndex pairs_;
 };
 

@@ -26,12 +26,16 @@ void WriteCsv(const Measurement& measurement, const std::vector<std::string>& co
     out << "theta_i,phi_i,theta_o,phi_o";
     const bool mono = measurement.channels.size() == 1 && measurement.channels.wavelengths_nm.empty();
     for (const std::string& name : measurement.channels.names) out << ',' << (mono ? "value" : name);
+    if (!samples.weight.empty()) out << ",weight";
+    if (!samples.sigma.empty() && samples.weight.empty()) out << ",sigma";
     out << '\n';
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const Vec3 wi = samples.wi(i), wo = samples.wo(i);
       out << degrees(PolarAngle(wi)) << ',' << degrees(Azimuth(wi)) << ',' << degrees(PolarAngle(wo)) << ','
           << degrees(Azimuth(wo));
       for (const std::vector<double>& values : samples.values) out << ',' << number(values[i]);
+      if (!samples.weight.empty()) out << ',' << number(samples.weight[i]);
+      if (!samples.sigma.empty() && samples.weight.empty()) out << ',' << number(samples.sigma[i]);
       out << '\n';
     }
   });

@@ -1,5 +1,6 @@
 // FRED tabular scatter text: "type bsdf_data", a format line, then for each incidence a line "theta_i phi_i" followed
-// by lines "theta_s phi_s value". Values are f_r in 1/sr without a cosine. The incident azimuth is that of the
+// by lines "theta_s phi_s value". Values are f_r in 1/sr without a cosine, or their decimal logarithms (bsdf=log); with
+// angles=sin the polar angles are given by their sines, the azimuths in degrees. The incident azimuth is that of the
 // propagation in the files that are around: the specular direction has the azimuth of its incidence.
 #include "lobefit/io/fred/reader.h"
 
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "lobefit/io/text/place.h"
+#include "lobefit/io/text/units.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {
@@ -15,6 +17,7 @@ namespace {
 
 struct FormatLine {
   AngleUnit unit = AngleUnit::kDegrees;
+  bool sines = false, logarithms = false;
   double scale = 1;
 };
 
@@ -27,15 +30,17 @@ FormatLine ParseFormatLine(const InputFile& file, std::size_t line_number,
     const std::string value = pair.size() == 2 ? ToLower(pair[1]) : "";
     if (key == "angles" && (value == "deg" || value == "rad")) {
       format.unit = value == "deg" ? AngleUnit::kDegrees : AngleUnit::kRadians;
-    } else if (key == "bsdf" && value == "value") {
-      continue;
+    } else if (key == "angles" && value == "sin") {
+      format.sines = true;
+    } else if (key == "bsdf" && (value == "value" || value == "log")) {
+      format.logarithms = value == "log";
     } else if (key == "scale" && pair.size() == 2) {
       format.scale = FiniteNumberAt(file, line_number, pair[1], "scale");
     } else {
       FailAtLine(file, line_number,
                  "the format line has '" + Excerpt(fields[i]) +
                      "', which is not known; allowed are angles=deg, angles=rad, "
-                     "bsdf=value and scale=NUMBER");
+                     "angles=sin, bsdf=value, bsdf=log and scale=NUMBER");
     }
   }
   return format;
@@ -83,7 +88,7 @@ Measurement ReadFred(const InputFile& file, const ReadOptions& options) {
                        "bsdf=value scale=1' if that is what the numbers are");
       }
       format = ParseFormatLine(file, at, fields);
-      to_radians = format.unit == AngleUnit::kDegrees ? kPi / 180 : 1;
+      to_radians = RadiansPerUnit(format.unit);
       has_format = true;
       continue;
     }
@@ -93,7 +98,13 @@ Measurement ReadFred(const InputFile& file, const ReadOptions& options) {
                      " fields; allowed are 2 (theta_i phi_i, a new "
                      "incidence) or 3 (theta_s phi_s value)");
     }
-    const double theta = to_radians * FiniteNumberAt(file, at, fields[0], fields.size() == 2 ? "theta_i" : "theta_s");
+    const char* polar = fields.size() == 2 ? "theta_i" : "theta_s";
+    const double number = FiniteNumberAt(file, at, fields[0], polar);
+    if (format.sines && std::fabs(number) > 1) {
+      FailAtLine(file, at,
+                 std::string(polar) + " is " + Excerpt(fields[0]) + ", but the format line says that it is a sine");
+    }
+    const double theta = format.sines ? std::asin(number) : to_radians * number;
     const double phi = to_radians * FiniteNumberAt(file, at, fields[1], fields.size() == 2 ? "phi_i" : "phi_s");
     if (std::fabs(theta) > kPi + 1e-6) {
       FailAtLine(file, at,
@@ -109,7 +120,8 @@ Measurement ReadFred(const InputFile& file, const ReadOptions& options) {
     if (!has_incidence) {
       FailAtLine(file, at, "a row theta_s phi_s value stands before the first line theta_i phi_i; add the incidence");
     }
-    const double value = format.scale * NumberAt(file, at, fields[2], "value");
+    const double stated = NumberAt(file, at, fields[2], "value");
+    const double value = format.scale * (format.logarithms ? std::pow(10.0, stated) : stated);
     builder.Add(wi, FromSpherical(theta, phi), &value, static_cast<std::uint32_t>(at));
   }
   if (!has_format) {

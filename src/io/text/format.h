@@ -6,16 +6,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lobefit/measurement/measurement.h"
 
 namespace lobefit {
 
-enum class AngleUnit { kDegrees, kRadians };
+enum class AngleUnit { kDegrees, kRadians, kGon, kMilliradians, kArcMinutes, kArcSeconds };
 // What the file's numbers are: f_r; f_r times the cosine of wo or of wi; pi f_r (reflectance factor); radiant intensity
 // per incident flux, which is f_r cos(theta_o) too but per irradiance of the whole sample; pi f_r cos(theta_o) (a
-// detector's reading relative to a white standard that faces it).
-enum class ValueKind { kBrdf, kBrdfCosO, kBrdfCosI, kReflectanceFactor, kIntensity, kReading };
+// detector's reading relative to a white standard that faces it); pi f_r cos(theta_i) (radiance relative to a white
+// standard lit along its normal, "I/F").
+enum class ValueKind { kBrdf, kBrdfCosO, kBrdfCosI, kReflectanceFactor, kIntensity, kReading, kReflectanceCosI };
 // Whether the file's incident direction points to the source (as here) or along the propagation of the light.
 enum class IncidentSense { kTowardsSource, kPropagation };
 enum class CellPosition { kCentre, kEdge };
@@ -50,12 +52,27 @@ struct ReadOptions {
   std::optional<double> noise_floor;
   // --repeated first|mean (csv): of a pair of directions that occurs again the first row is kept, or the mean of all
   // with their spread as weight.
-  RepeatedRows repeated = RepeatedRows::kFirst;
-  std::optional<AngleUnit> angle_unit;  // --angle-unit deg|rad          (csv, astm)
+  std::optional<RepeatedRows> repeated;  // Unset: first
+  std::optional<AngleUnit> angle_unit;   // --angle-unit deg|rad|gon|mrad (csv, astm)
   std::optional<ValueKind>
       value_kind;  // --value-kind f|f-cos-o|f-cos-i|pi-f|intensity|pi-f-cos-o (csv, alta, astm, exr)
   std::optional<IncidentSense> incident_sense;  // --incident towards|propagation (csv, astm, fred)
   std::optional<std::string> value_column;      // --value-column NAME            (csv with several candidate columns)
+  // --columns MEANING=COLUMN,... (csv): what columns mean whose names do not say it; io/csv/mapping.h.
+  std::string columns;
+  // --where COLUMN=VALUE,... (csv): only rows with these texts or numbers.
+  std::string where;
+  // --value-scale UNIT (csv): what the numbers are in: %, dB, log10, ln, 1e-3/sr, a.u.; io/text/units.h.
+  std::string value_scale;
+  // --no-value LIST (all): words (csv) and numbers that stand for no value.
+  std::string no_value;
+  // --exclude ZONES (all): what is set aside; measurement/exclusion.h.
+  std::string exclude;
+  // --channels CHOICE (all): which channels are used; measurement/spectrum.h. A sample needs values in those only.
+  std::string channels;
+  // What is stated behind the file's name, FILE:theta_i=30,sample-rotation=20: keys of a CSV's head; of other formats
+  // sample-rotation only.
+  std::vector<std::string> keys;
   CellPosition merl_cell = CellPosition::kCentre;  // --merl-cell centre|edge      (merl)
   // --side front|back (bsdf-xml, lighttools). Unset: front, or back where the file has only that.
   std::optional<Side> side;

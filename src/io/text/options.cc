@@ -4,6 +4,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/text/units.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {
@@ -16,16 +17,19 @@ struct Word {
 };
 
 // The first word of each value is its name.
-constexpr std::array<Word<AngleUnit>, 4> kAngleUnits = {{{"deg", AngleUnit::kDegrees},
-                                                         {"degrees", AngleUnit::kDegrees},
+constexpr std::array<Word<AngleUnit>, 6> kAngleUnits = {{{"deg", AngleUnit::kDegrees},
                                                          {"rad", AngleUnit::kRadians},
-                                                         {"radians", AngleUnit::kRadians}}};
-constexpr std::array<Word<ValueKind>, 6> kValueKinds = {{{"f", ValueKind::kBrdf},
+                                                         {"gon", AngleUnit::kGon},
+                                                         {"mrad", AngleUnit::kMilliradians},
+                                                         {"arcmin", AngleUnit::kArcMinutes},
+                                                         {"arcsec", AngleUnit::kArcSeconds}}};
+constexpr std::array<Word<ValueKind>, 7> kValueKinds = {{{"f", ValueKind::kBrdf},
                                                          {"f-cos-o", ValueKind::kBrdfCosO},
                                                          {"f-cos-i", ValueKind::kBrdfCosI},
                                                          {"pi-f", ValueKind::kReflectanceFactor},
                                                          {"intensity", ValueKind::kIntensity},
-                                                         {"pi-f-cos-o", ValueKind::kReading}}};
+                                                         {"pi-f-cos-o", ValueKind::kReading},
+                                                         {"pi-f-cos-i", ValueKind::kReflectanceCosI}}};
 constexpr std::array<Word<IncidentSense>, 2> kSenses = {
     {{"towards", IncidentSense::kTowardsSource}, {"propagation", IncidentSense::kPropagation}}};
 constexpr std::array<Word<CellPosition>, 3> kPositions = {
@@ -89,9 +93,9 @@ double RequireNumber(const char* option, const std::string& word, double low, do
 
 }  // namespace
 
-std::optional<AngleUnit> ParseAngleUnit(std::string_view word) { return Find(kAngleUnits, word); }
 std::optional<ValueKind> ParseValueKind(std::string_view word) { return Find(kValueKinds, word); }
 std::optional<IncidentSense> ParseIncidentSense(std::string_view word) { return Find(kSenses, word); }
+std::optional<RepeatedRows> ParseRepeatedRows(std::string_view word) { return Find(kRepeated, word); }
 std::optional<CellPosition> ParseCellPosition(std::string_view word) { return Find(kPositions, word); }
 
 std::optional<UtiaEncoding> ParseUtiaEncoding(std::string_view word) { return Find(kUtiaEncodings, word); }
@@ -108,6 +112,7 @@ std::string AllowedValueKinds() {
 std::string Name(AngleUnit unit) { return NameIn(kAngleUnits, unit); }
 std::string Name(ValueKind kind) { return NameIn(kValueKinds, kind); }
 std::string Name(IncidentSense sense) { return NameIn(kSenses, sense); }
+std::string Name(RepeatedRows rows) { return NameIn(kRepeated, rows); }
 std::string Name(CellPosition position) { return NameIn(kPositions, position); }
 std::string Name(UtiaEncoding encoding) { return NameIn(kUtiaEncodings, encoding); }
 std::string Name(ExrAxes axes) { return NameIn(kExrAxes, axes); }
@@ -122,9 +127,26 @@ const std::vector<ReadOptionEntry>& ReadOptionTable() {
        [](Options o, Word w) { o->noise_floor = RequireNumber("noise-floor", w, 1e-300, 1e300); }},
       {"repeated", "first|mean", "what becomes of rows with the same directions (csv)",
        [](Options o, Word w) { o->repeated = Require(kRepeated, "repeated", w); }},
-      {"angle-unit", "deg|rad", "unit of the angles (csv, astm)",
-       [](Options o, Word w) { o->angle_unit = Require(kAngleUnits, "angle-unit", w); }},
-      {"value-kind", "f|f-cos-o|f-cos-i|pi-f|intensity|pi-f-cos-o", "what the values are (csv, alta, astm, exr)",
+      {"angle-unit", "deg|rad|gon|mrad", "unit of the angles (csv, astm)",
+       [](Options o, Word w) {
+         o->angle_unit = ParseAngleUnit(w);
+         if (!o->angle_unit) Require(kAngleUnits, "angle-unit", w);
+       }},
+      {"columns", "MEANING=COLUMN,...", "what columns mean, as in theta_i=zenith_1,theta_o=#3,f=reading (csv)",
+       [](Options o, Word w) { o->columns = w; }},
+      {"where", "COLUMN=VALUE,...", "only the rows with these values, as in pol=s (csv)",
+       [](Options o, Word w) { o->where = w; }},
+      {"no-value", "LIST", "numbers and words that stand for no value, as in 0,-999,OVER (all formats; words: csv)",
+       [](Options o, Word w) { o->no_value = w; }},
+      {"exclude", "ZONES",
+       "what is set aside: specular:DEG, retro:DEG, value<X, value>X, theta-i>DEG, theta-o>DEG, with commas between "
+       "(all "
+       "formats)",
+       [](Options o, Word w) { o->exclude = w; }},
+      {"value-scale", "UNIT", "what the values are in: %, dB, log10, ln, 1e-3/sr, a.u. (csv)",
+       [](Options o, Word w) { o->value_scale = w; }},
+      {"value-kind", "f|f-cos-o|f-cos-i|pi-f|intensity|pi-f-cos-o|pi-f-cos-i",
+       "what the values are (csv, alta, astm, exr)",
        [](Options o, Word w) { o->value_kind = Require(kValueKinds, "value-kind", w); }},
       {"incident", "towards|propagation", "sense of the incident direction (csv, astm, fred)",
        [](Options o, Word w) { o->incident_sense = Require(kSenses, "incident", w); }},
@@ -185,6 +207,8 @@ double BrdfFactor(ValueKind kind, double cos_theta_i, double cos_theta_o) {
       return kInvPi;
     case ValueKind::kReading:
       return kInvPi * per_cos_o;
+    case ValueKind::kReflectanceCosI:
+      return cos_theta_i > 0 ? kInvPi / cos_theta_i : kInvPi;
   }
   return 1;
 }

@@ -11,9 +11,9 @@
 namespace lobefit {
 
 // Case does not matter; nothing for a word that is not known.
-std::optional<AngleUnit> ParseAngleUnit(std::string_view word);          // deg, degrees, rad, radians
 std::optional<ValueKind> ParseValueKind(std::string_view word);          // see AllowedValueKinds()
 std::optional<IncidentSense> ParseIncidentSense(std::string_view word);  // towards, propagation
+std::optional<RepeatedRows> ParseRepeatedRows(std::string_view word);    // first, mean
 std::optional<CellPosition> ParseCellPosition(std::string_view word);    // centre, center, edge
 std::optional<UtiaEncoding> ParseUtiaEncoding(std::string_view word);    // raw, srgb
 std::optional<ExrAxes> ParseExrAxes(std::string_view word);              // slice, slice-sqrt, hemisphere, utia
@@ -24,6 +24,7 @@ std::string AllowedValueKinds();
 std::string Name(AngleUnit unit);
 std::string Name(ValueKind kind);
 std::string Name(IncidentSense sense);
+std::string Name(RepeatedRows rows);
 std::string Name(CellPosition position);
 std::string Name(UtiaEncoding encoding);
 std::string Name(ExrAxes axes);

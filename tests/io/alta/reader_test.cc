@@ -402,7 +402,7 @@ TEST(Alta, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(ErrorOf(ReadAlta, Text("COS_TH", "1 1", "0.5 1\n", "#PARAM_OUT ENERGY\n")),
             "line 5: #PARAM_OUT is 'ENERGY', which does not say what the values are; known are INV_STERADIAN, "
             "INV_STERADIAN_COSINE_FACTOR, RGB_COLOR and XYZ_COLOR: state it with --value-kind, "
-            "one of f, f-cos-o, f-cos-i, pi-f, intensity, pi-f-cos-o");
+            "one of f, f-cos-o, f-cos-i, pi-f, intensity, pi-f-cos-o, pi-f-cos-i");
   EXPECT_EQ(ErrorOf(ReadAlta, Text("COS_TH", "1 1", "")), "line 5: the file ends without a row of data");
   EXPECT_EQ(ErrorOf(ReadAlta, Text("COS_TH", "1 1", "#DIM 1 1\n0.5 1\n")),
             "line 6: the key #DIM stands in line 3 already");

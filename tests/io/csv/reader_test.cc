@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/io/csv/columns.h"
 #include "lobefit/io/read.h"
 #include "lobefit/math/directions.h"
 
@@ -191,7 +190,10 @@ TEST(Csv, ChosenColumnAndIgnoredOnes) {
   EXPECT_EQ(m.conventions.at("value-column"), "first (option)");
   ASSERT_EQ(m.remarks.size(), 1U);
   EXPECT_EQ(m.remarks[0], "columns not used: second, f");
-  EXPECT_THROW(Read(text), InputError);
+  EXPECT_EQ(F(Read(text), 0), 3);
+  EXPECT_EQ(Read(text).remarks[0], "columns not used: first, second");
+  // A name that speaks of an angle is not passed over.
+  EXPECT_THROW(Read("theta_i,theta_o,tilt,f\n10,20,1,3\n"), InputError);
 }
 
 TEST(Csv, WeightsAndUncertaintiesAreKept) {
@@ -223,23 +225,6 @@ TEST(Csv, ANoiseFloorIsTheUncertaintyOfEveryReading) {
   const Measurement m = Read("theta_i,theta_o,f\n10,20,0.001\n10,30,100\n10,40,0.002\n", options);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(m.samples.sigma[i] * m.samples.wi_z[i], 0.01, 1e-15);
   EXPECT_EQ(m.conventions.at("noise-floor"), "0.01 (option)");
-}
-
-TEST(ClassifyColumn, KnowsTheSpellingsInUse) {
-  for (const char* name : {"theta_i_deg", "thetai", "Theta_In (deg)", "AOI", "INC", "incidence_deg", "theta_i[rad]"}) {
-    EXPECT_EQ(ClassifyColumn(name).role, ColumnRole::kThetaI) << name;
-  }
-  for (const char* name : {"theta_o", "theta_r", "thetas", "theta_v", "theta_out", "thetar", "receive_deg"}) {
-    EXPECT_EQ(ClassifyColumn(name).role, ColumnRole::kThetaO) << name;
-  }
-  for (const char* name : {"value", "BRDF", "bsdf", "f", "fr", "f_r11", "fr_L_over_E", "f(1/sr)"}) {
-    EXPECT_EQ(ClassifyColumn(name).role, ColumnRole::kValue) << name;
-  }
-  EXPECT_EQ(ClassifyColumn("theta_i_rad").angle_unit, AngleUnit::kRadians);
-  EXPECT_EQ(ClassifyColumn("wavelength_nm").role, ColumnRole::kWavelength);
-  EXPECT_EQ(ClassifyColumn("sigma_550nm").channel, "550nm");
-  EXPECT_EQ(ClassifyColumn("foo").role, ColumnRole::kUnknown);
-  EXPECT_EQ(ClassifyColumn("-3nm").role, ColumnRole::kUnknown);
 }
 
 }  // namespace

@@ -1,0 +1,212 @@
+#include "lobefit/io/csv/keys.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lobefit/base/text.h"
+#include "lobefit/io/text/options.h"
+#include "lobefit/io/text/place.h"
+
+namespace lobefit {
+namespace {
+
+// "30 deg", "633nm", "0,5": a number and the unit behind it.
+struct Quantity {
+  double number = 0;
+  std::string unit;
+};
+
+std::optional<Quantity> ParseQuantity(std::string_view text) {
+  std::string plain(Trim(text));
+  std::replace(plain.begin(), plain.end(), ',', '.');
+  for (std::size_t n = plain.size(); n > 0; --n) {
+    const char last = plain[n - 1];
+    if (!(last >= '0' && last <= '9') && last != '.') continue;
+    const std::optional<double> number = ParseDouble(std::string_view(plain).substr(0, n));
+    if (!number || !std::isfinite(*number)) continue;
+    std::string_view unit = Trim(std::string_view(plain).substr(n));
+    if (unit.size() > 1 && (unit.front() == '(' || unit.front() == '[')) unit = unit.substr(1, unit.size() - 2);
+    return Quantity{*number, PlainUnit(unit)};
+  }
+  return std::nullopt;
+}
+
+std::string KeyName(std::string_view text) {
+  std::string name;
+  for (const char c : ToLower(Trim(text))) {
+    const bool kept = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (kept) {
+      name += c;
+    } else if (!name.empty() && name.back() != '-') {
+      name += '-';
+    }
+  }
+  while (!name.empty() && name.back() == '-') name.pop_back();
+  return name;
+}
+
+template <class Value>
+void Set(const InputFile& file, std::size_t line, std::string_view key, std::string_view word,
+         const std::string& allowed, const std::optional<Value>& value, std::optional<Value>* target) {
+  if (!value) FailAtLine(file, line, std::string(key) + " is '" + Excerpt(word) + "'; allowed are " + allowed);
+  *target = value;
+}
+
+// The kind of value that a word of the option's table or a column's name stands for.
+std::optional<ValueKind> KindOf(std::string_view word) {
+  if (const std::optional<ValueKind> kind = ParseValueKind(word)) return kind;
+  return ClassifyColumn(word).value_kind;
+}
+
+bool Is(const std::string& name, std::initializer_list<std::string_view> spellings) {
+  return std::find(spellings.begin(), spellings.end(), name) != spellings.end();
+}
+
+const std::vector<std::string>& KnownKeys() {
+  static const std::vector<std::string> keys = {
+      "angle-unit",      "value-kind", "value-scale", "incident-sense", "wavelength-unit", "sample-rotation-deg",
+      "sample-rotation", "no-value",   "exclude",     "columns",        "value-column",    "repeated"};
+  return keys;
+}
+
+bool ReadCoordinate(std::string_view key, std::string_view word, CsvKeys* keys) {
+  const CsvColumn column = ClassifyColumn(key);
+  const std::optional<Quantity> quantity = ParseQuantity(word);
+  if (!quantity) return false;
+  if (column.role == ColumnRole::kWavelength) {
+    const std::string& unit = quantity->unit.empty() ? column.unit : quantity->unit;
+    const std::optional<WavelengthUnit> known =
+        unit.empty() ? std::optional(WavelengthUnit{quantity->number < 100 ? 1e3 : 1.0}) : ParseWavelengthUnit(unit);
+    if (!known || !(quantity->number > 0)) return false;
+    keys->wavelength_nm = std::round(known->ToNm(quantity->number) * 1e6) / 1e6;
+    return true;
+  }
+  if (column.role != ColumnRole::kCoordinate || column.coordinate == Coordinate::kTheta ||
+      column.coordinate == Coordinate::kPhi)
+    return false;
+  const std::optional<AngleUnit> unit = quantity->unit.empty() ? column.angle_unit : ParseAngleUnit(quantity->unit);
+  if (!quantity->unit.empty() && !unit) return false;
+  keys->Fix({column.coordinate, quantity->number, unit, column.from_horizon});
+  return true;
+}
+
+// A key that is none, though it has a word of one: said, so that a unit does not go unread in silence.
+void RemarkOnResemblance(std::size_t line, std::string_view key, const std::string& name, std::string_view word,
+                         CsvKeys* keys) {
+  if (name.empty() || name.size() > 30 || Trim(word).empty()) return;
+  const auto has = [&](std::string_view part) { return name.find(part) != std::string::npos; };
+  const bool resembles = has("unit") || has("sense") || has("convention") || has("cosine") || ParseAngleUnit(word) ||
+                         ParseIncidentSense(word) || ParseValueKind(word);
+  if (resembles) {
+    keys->remarks.push_back("line " + std::to_string(line) + ": the key '" + Excerpt(key) +
+                            "' is not known and was not used; known are " + Join(KnownKeys()) +
+                            ", theta_i and the other angles, wavelength");
+  }
+}
+
+}  // namespace
+
+void CsvKeys::Fix(const FixedCoordinate& coordinate) {
+  for (FixedCoordinate& known : fixed) {
+    if (known.coordinate != coordinate.coordinate) continue;
+    known = coordinate;
+    return;
+  }
+  fixed.push_back(coordinate);
+}
+
+const FixedCoordinate* CsvKeys::Find(Coordinate coordinate) const {
+  for (const FixedCoordinate& known : fixed) {
+    if (known.coordinate == coordinate) return &known;
+  }
+  return nullptr;
+}
+
+bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, CsvKeys* keys) {
+  const std::size_t at = text.find_first_of(":=");
+  if (at == std::string_view::npos) return false;
+  const std::string_view key = Trim(text.substr(0, at)), word = Trim(text.substr(at + 1));
+  const std::string name = KeyName(key);
+  if (Is(name, {"angle-unit", "angle-units", "angular-unit", "angular-units", "unit-of-angle", "unit-of-angles",
+                "units-of-angle", "units-of-angles"})) {
+    Set(file, line, "angle-unit", word, "deg, rad, gon, mrad, arcmin, arcsec", ParseAngleUnit(word), &keys->angle_unit);
+  } else if (Is(name, {"units", "unit", "angles", "angle"}) && ParseAngleUnit(word)) {
+    keys->angle_unit = ParseAngleUnit(word);
+  } else if (Is(name, {"value-kind", "values-kind", "kind-of-value", "kind-of-values"})) {
+    Set(file, line, "value-kind", word, AllowedValueKinds(), KindOf(word), &keys->value_kind);
+  } else if (Is(name, {"value-scale", "value-unit", "value-units", "values-unit"})) {
+    Set(file, line, "value-scale", word, "1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.",
+        ParseValueScale(word), &keys->value_scale);
+  } else if (Is(name, {"incident", "incident-sense", "incident-direction", "sense-of-incidence", "incidence-sense"}) &&
+             !ParseQuantity(word)) {
+    Set(file, line, "incident", word, "towards, propagation", ParseIncidentSense(word), &keys->incident_sense);
+  } else if (Is(name, {"wavelength-unit", "wavelength-units", "wavelengths-unit", "unit-of-wavelength",
+                       "unit-of-wavelengths"})) {
+    Set(file, line, "wavelength-unit", word, "nm, um, mm, m, A, cm^-1, eV, THz", ParseWavelengthUnit(word),
+        &keys->wavelength_unit);
+  } else if (name == "sample-rotation-deg") {
+    const std::optional<double> degrees = ParseDouble(word);
+    if (!degrees || !std::isfinite(*degrees)) {
+      FailAtLine(file, line, "sample-rotation-deg is '" + Excerpt(word) + "'; a number of degrees is allowed");
+    }
+    keys->Fix({Coordinate::kSampleRotation, *degrees, AngleUnit::kDegrees});
+  } else if (name == "columns") {
+    keys->columns = std::string(word);
+  } else if (name == "where") {
+    keys->where = std::string(word);
+  } else if (name == "no-value") {
+    keys->no_value = std::string(word);
+  } else if (name == "exclude") {
+    keys->exclude = std::string(word);
+  } else if (name == "value-column") {
+    keys->value_column = std::string(word);
+  } else if (name == "repeated") {
+    keys->repeated = std::string(word);
+  } else if (!ReadCoordinate(key, word, keys)) {
+    // A misspelt key would leave the file read in the wrong unit without a word.
+    const std::string suggestion = name.size() > 5 ? DidYouMean(name, KnownKeys()) : "";
+    if (!suggestion.empty()) FailAtLine(file, line, "the key '" + Excerpt(key) + "' is not known" + suggestion);
+    RemarkOnResemblance(line, key, name, word, keys);
+    return false;
+  }
+  return true;
+}
+
+bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::string_view>& fields, CsvKeys* keys) {
+  std::vector<std::string_view> filled;
+  for (const std::string_view field : fields) {
+    if (!Trim(field).empty()) filled.push_back(Trim(field));
+  }
+  if (filled.empty() || filled.size() > 3) return false;
+  const std::size_t mark = filled[0].find_first_of(":=");
+  std::string text(filled[0]);
+  if (mark == std::string_view::npos) {
+    if (filled.size() == 1) return false;
+    text += ':';
+  }
+  for (std::size_t i = 1; i < filled.size(); ++i) {
+    text += ' ';
+    text += filled[i];
+  }
+  return ReadKey(file, line, text, keys);
+}
+
+void RequireSameUnits(const InputFile& file, std::size_t line, const CsvKeys& before, const CsvKeys& after) {
+  const auto require = [&](bool same, const char* key) {
+    if (!same)
+      FailAtLine(file, line,
+                 std::string(key) +
+                     " changes after rows have been read; put the parts into files of their own and name them all");
+  };
+  require(before.angle_unit == after.angle_unit, "angle-unit");
+  require(before.value_kind == after.value_kind, "value-kind");
+  require(before.incident_sense == after.incident_sense, "incident");
+  require(before.value_scale.has_value() == after.value_scale.has_value(), "value-scale");
+  require(before.wavelength_unit.has_value() == after.wavelength_unit.has_value(), "wavelength-unit");
+  require(before.columns == after.columns && before.where == after.where && before.no_value == after.no_value &&
+              before.exclude == after.exclude && before.value_column == after.value_column &&
+              before.repeated == after.repeated,
+          "columns, where, no-value, exclude, value-column or repeated");
+}
+
+}  // namespace lobefit

@@ -1,0 +1,83 @@
+#include "lobefit/measurement/polarisation.h"
+
+#include <algorithm>
+#include <array>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+#include "lobefit/measurement/pair_index.h"
+
+namespace lobefit {
+namespace {
+
+bool IsUnpolarised(const std::string& name) {
+  static constexpr std::array<std::string_view, 14> kNames = {"u",    "unpol",  "unpol.",  "unpolarized", "unpolarised",
+                                                              "none", "random", "avg",     "average",     "mean",
+                                                              "n",    "no",     "natural", "np"};
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
+void KeepOne(const std::vector<std::uint8_t>& polarisation, std::size_t chosen, Measurement* measurement) {
+  std::vector<std::uint8_t> keep(polarisation.size());
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    keep[i] = polarisation[i] == chosen ? 1 : 0;
+    others += keep[i] == 0 ? 1 : 0;
+  }
+  measurement->samples.Keep(keep);
+  measurement->set_aside.Add(SetAsideReason::kOutsideSelection, others);
+}
+
+}  // namespace
+
+std::string AverageOverPolarisation(const std::vector<std::uint8_t>& polarisation,
+                                    const std::vector<std::string>& names, Measurement* measurement) {
+  if (names.size() < 2) return "";
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    if (!IsUnpolarised(names[n])) continue;
+    KeepOne(polarisation, n, measurement);
+    return "of the polarisations, that named '" + Excerpt(names[n]) + "' is used";
+  }
+  if (names.size() > 2) {
+    std::vector<std::string> some;
+    for (std::size_t n = 0; n < std::min<std::size_t>(names.size(), 6); ++n) some.push_back(Excerpt(names[n], 20));
+    throw InputError("rows have " + std::to_string(names.size()) + " polarisations (" + Join(some) +
+                     "); choose one with --where");
+  }
+  Samples& samples = measurement->samples;
+  PairIndex index(samples.size());
+  struct Group {
+    std::size_t first = 0;
+    std::array<std::size_t, 2> counts = {};
+  };
+  std::vector<Group> groups;
+  std::vector<std::size_t> group_of(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    group_of[i] = index.FindOrAdd(samples.wi(i), samples.wo(i));
+    if (group_of[i] == groups.size()) groups.push_back({i, {}});
+    ++groups[group_of[i]].counts[polarisation[i]];
+  }
+  // Sums over the samples of a pair, each polarisation with half of the weight, gathered at the pair's first sample.
+  const auto average = [&](std::vector<double>* array) {
+    std::vector<double> sums(groups.size(), 0);
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      sums[group_of[i]] += 0.5 * (*array)[i] / static_cast<double>(groups[group_of[i]].counts[polarisation[i]]);
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g) (*array)[groups[g].first] = sums[g];
+  };
+  for (std::vector<double>& values : samples.values) average(&values);
+  if (!samples.weight.empty()) average(&samples.weight);
+  std::vector<std::uint8_t> keep(samples.size(), 0);
+  std::size_t incomplete = 0;
+  for (const Group& group : groups) {
+    const bool both = group.counts[0] > 0 && group.counts[1] > 0;
+    keep[group.first] = both ? 1 : 0;
+    incomplete += both ? 0 : 1;
+  }
+  samples.Keep(keep);
+  measurement->set_aside.Add(SetAsideReason::kHole, incomplete);
+  return "the rows of the polarisations '" + Excerpt(names[0]) + "' and '" + Excerpt(names[1]) +
+         "' were averaged to f_r of unpolarised light";
+}
+
+}  // namespace lobefit

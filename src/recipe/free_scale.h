@@ -1,0 +1,13 @@
+// Values of which the scale is not known: counts, arbitrary units, relative to a peak.
+#pragma once
+
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+
+// The recipe without what only calibrated values can hold: each lobe has a free factor in place of its Fresnel term,
+// and neither that nor the diffuse part is bounded by 1, so that the shape is fitted and the amplitudes stand relative
+// to each other. Metals' indices are dropped with their Fresnel term.
+Recipe WithFreeScale(const Recipe& recipe);
+
+}  // namespace lobefit

@@ -1,0 +1,99 @@
+// Keys of the head in any spelling and place, and units of names.
+#include <cmath>
+
+#include "tests/io/csv/read_csv.h"
+
+#include "lobefit/io/text/units.h"
+
+namespace lobefit {
+namespace {
+
+const std::string kRows = "theta_i,phi_i,theta_o,phi_o,brdf\n0.5,0,0.7,3,1\n";
+
+TEST(CsvKeys, AnySpellingAndPlace) {
+  for (const char* key : {"# angle-unit: rad", "# angle_unit: rad", "# Angle Unit = radians", "% ANGLE-UNITS: rad",
+                          "// angle unit: rad", "# units: rad", "# Angles: radians", "angle unit,rad"}) {
+    const Measurement m = ReadText(std::string(key) + "\n" + kRows);
+    EXPECT_NEAR(std::acos(m.samples.wi_z[0]), 0.5, 1e-12) << key;
+    EXPECT_EQ(m.conventions.at("angle-unit"), "rad (header)") << key;
+  }
+  const Measurement after = ReadText("theta_i,phi_i,theta_o,phi_o,brdf\n# angle_unit: rad\n0.5,0,0.7,3,1\n");
+  EXPECT_NEAR(std::acos(after.samples.wi_z[0]), 0.5, 1e-12);
+  EXPECT_EQ(ReadText("# value_kind: f-cos-o\n" + kRows).conventions.at("value-kind"), "f-cos-o (header)");
+  EXPECT_EQ(ReadText("# Value kind: cosine corrected BRDF\n" + kRows).conventions.at("value-kind"), "f-cos-o (header)");
+  EXPECT_EQ(ReadText("# incident-sense: propagation\n" + kRows).conventions.at("incident"), "propagation (header)");
+  EXPECT_EQ(ReadText("# no_value: -1\n" + kRows + "0.5,0,0.8,3,-1\n").set_aside[SetAsideReason::kHole], 1U);
+}
+
+TEST(CsvKeys, WhatResemblesAKeyIsSaid) {
+  EXPECT_NE(MessageOf("# angle-unti: rad\n" + kRows).find("did you mean 'angle-unit'?"), std::string::npos);
+  EXPECT_TRUE(HasRemark(ReadText("# unit for all of the angles: rad\n" + kRows), "is not known and was not used"));
+  EXPECT_TRUE(HasRemark(ReadText("# light convention: away\n" + kRows), "is not known and was not used"));
+  EXPECT_TRUE(ReadText("# made by: N.N.\n# lobefit.alpha_x: 0.1\n# https://example.org/a-b\n" + kRows).remarks.empty());
+}
+
+TEST(Units, AnglesAreUnderstoodOrRefused) {
+  const auto radians = [](const char* unit) {
+    return ParseAngleUnit(unit) ? RadiansPerUnit(*ParseAngleUnit(unit)) : -1;
+  };
+  for (const char* unit : {"deg", "°", "Degrees", "º", "DEG", "grados"})
+    EXPECT_DOUBLE_EQ(radians(unit), kPi / 180) << unit;
+  EXPECT_DOUBLE_EQ(radians("gon"), kPi / 200);
+  EXPECT_DOUBLE_EQ(radians("mrad"), 1e-3);
+  EXPECT_DOUBLE_EQ(radians("arcmin"), kPi / 10800);
+  EXPECT_DOUBLE_EQ(radians("rad"), 1);
+  EXPECT_EQ(radians("grad"), -1);  // deg in German, gon in English
+  EXPECT_EQ(radians("furlong"), -1);
+  ExpectSample(ReadText("theta_i (gon),theta_o (mrad),f\n50,785.3981633974483,1\n"), 0, 45, 0, 45, 180, 1);
+}
+
+TEST(Units, WavelengthsAreUnderstood) {
+  const auto nm = [](const char* unit, double number) {
+    return ParseWavelengthUnit(unit) ? ParseWavelengthUnit(unit)->ToNm(number) : -1;
+  };
+  EXPECT_EQ(nm("nm", 550), 550);
+  EXPECT_EQ(nm("µm", 0.5), 500);
+  EXPECT_EQ(nm("μm", 0.5), 500);
+  EXPECT_EQ(nm("m", 5e-7), 500);
+  EXPECT_EQ(nm("cm^-1", 20000), 500);
+  EXPECT_EQ(nm("cm⁻¹", 20000), 500);
+  EXPECT_EQ(nm("Å", 5000), 500);
+  EXPECT_NEAR(nm("eV", 2), 619.92, 0.01);
+  EXPECT_NEAR(nm("THz", 500), 599.58, 0.01);
+  // A stated unit is not second-guessed; without one the first rows decide for all.
+  EXPECT_EQ(ReadText("wavelength_nm,theta_i,theta_o,f\n13.5,10,20,1\n").channels.wavelengths_nm[0], 13.5);
+  EXPECT_EQ(ReadText("wavelength_um,theta_i,theta_o,f\n120,10,20,1\n").channels.wavelengths_nm[0], 120000);
+  EXPECT_EQ(ReadText("wavelength,theta_i,theta_o,f\n0.55,10,20,1\n10.6,10,20,1\n").channels.wavelengths_nm,
+            (std::vector<double>{550, 10600}));
+}
+
+TEST(Units, ScalesOfValuesAndTheirUncertainties) {
+  EXPECT_NEAR(ReadText("theta_i,theta_o,BRDF (dB)\n10,20,-20\n").samples.values[0][0], 0.01, 1e-15);
+  ReadOptions options;
+  options.value_scale = "%";
+  EXPECT_NEAR(ReadText("theta_i,theta_o,f\n10,20,50\n", options).samples.values[0][0], 0.5, 1e-15);
+  options.value_scale = "furlong";
+  EXPECT_NE(MessageOf("theta_i,theta_o,f\n10,20,50\n", options).find("--value-scale furlong: allowed are"),
+            std::string::npos);
+  // The same standard deviation said in five ways gives the same weights.
+  const Measurement plain = ReadText("theta_i,theta_o,f,sigma\n10,20,0.5,0.05\n10,30,0.25,0.1\n");
+  for (const char* text : {"theta_i,theta_o,f,relative uncertainty (%)\n10,20,0.5,10\n10,30,0.25,40\n",
+                           "theta_i,theta_o,f,u_rel\n10,20,0.5,0.1\n10,30,0.25,0.4\n",
+                           "theta_i,theta_o,f,U (k=2)\n10,20,0.5,0.1\n10,30,0.25,0.2\n",
+                           "theta_i,theta_o,f,variance\n10,20,0.5,0.0025\n10,30,0.25,0.01\n",
+                           "theta_i,theta_o,f (%),sigma\n10,20,50,5\n10,30,25,10\n",
+                           "theta_i,theta_o,f (%),sigma (1/sr)\n10,20,50,0.05\n10,30,25,0.1\n"}) {
+    const Measurement same = ReadText(text);
+    ASSERT_EQ(same.samples.sigma.size(), 2U) << text;
+    EXPECT_NEAR(same.samples.sigma[0], plain.samples.sigma[0], 1e-12) << text;
+  }
+  EXPECT_EQ(plain.samples.sigma, (std::vector<double>{0.05, 0.1}));
+  // One that is missing counts as unknown.
+  const Measurement missing =
+      ReadText("theta_i,theta_o,f,sigma\n10,20,0.5,0.05\n10,30,0.25,\n10,40,0.25,-\n10,50,0.2,0\n");
+  EXPECT_EQ(missing.samples.size(), 4U);
+  EXPECT_TRUE(HasRemark(missing, "3 samples have no uncertainty"));
+}
+
+}  // namespace
+}  // namespace lobefit

@@ -1,0 +1,142 @@
+// The same directions in the layouts of scatterometers, spreadsheets and computer graphics.
+#include "tests/io/csv/read_csv.h"
+
+namespace lobefit {
+namespace {
+
+// theta_i 30 degrees, viewers at -20 and 45 degrees of the plane: (20, 0) and (45, 180).
+void ExpectTheTwo(const Measurement& m) {
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 0, 30, 0, 20, 0, 0.5);
+  ExpectSample(m, 1, 30, 0, 45, 180, 0.25);
+}
+
+TEST(CsvLayouts, TheLightStatedInTheHead) {
+  ExpectTheTwo(ReadText("# AOI: 30 deg\ntheta_s,BSDF\n-20,0.5\n45,0.25\n"));
+  ExpectTheTwo(ReadText("AOI;30;deg\ntheta_s;BSDF\n-20;0,5\n45;0,25\n"));
+  ExpectTheTwo(ReadText("# theta_i = 0.5235987755982988 rad\nangle,BSDF\n-20,0.5\n45,0.25\n"));
+  ReadOptions options;
+  options.keys = {"theta_i=30"};
+  ExpectTheTwo(ReadText("theta_s,BSDF\n-20,0.5\n45,0.25\n", options));
+  const Measurement wavelength = ReadText("# AOI: 30 deg\n# wavelength: 633 nm\ntheta_s,BSDF\n-20,0.5\n45,0.25\n");
+  EXPECT_EQ(wavelength.channels.wavelengths_nm, (std::vector<double>{633}));
+}
+
+TEST(CsvLayouts, OffsetsFromTheMirrorDirection) {
+  ExpectTheTwo(ReadText("AOI,delta_theta,BSDF\n30,-50,0.5\n30,15,0.25\n"));
+  ExpectTheTwo(ReadText("AOI,theta_s - theta_i,BSDF\n30,-50,0.5\n30,15,0.25\n"));
+  ExpectTheTwo(ReadText("AOI,theta_i - theta_s,BSDF\n30,50,0.5\n30,-15,0.25\n"));
+  const std::string betas = "-0.8420201433256687,0.5\n0.2071067811865476,0.25\n";
+  ExpectTheTwo(ReadText("# AOI: 30\nbeta - beta0,BSDF\n" + betas));
+  ExpectTheTwo(ReadText("# AOI: 30\nsin(theta_s)-sin(theta_i),BSDF\n" + betas));
+  // Without a sign: towards the normal, where there always is a direction.
+  const Measurement unsigned_offset = ReadText("AOI,|beta-beta0|,BSDF\n30,0.5,0.5\n30,0,0.25\n");
+  ExpectSample(unsigned_offset, 0, 30, 0, 0, 0, 0.5);
+  ExpectSample(unsigned_offset, 1, 30, 0, 30, 180, 0.25);
+  // A beta beyond 1 is no direction.
+  const Measurement beyond = ReadText("AOI,beta-beta0,BSDF\n30,0.6,0.5\n30,0,0.25\n");
+  EXPECT_EQ(beyond.samples.size(), 1U);
+  EXPECT_EQ(beyond.set_aside.total(), 1U);
+}
+
+TEST(CsvLayouts, AColumnForEachAngle) {
+  const Measurement wide = ReadText("theta_s,AOI=10,AOI=30\n-20,1,0.5\n45,2,0.25\n");
+  ASSERT_EQ(wide.samples.size(), 4U);
+  ExpectSample(wide, 0, 10, 0, 20, 0, 1);
+  ExpectSample(wide, 1, 30, 0, 20, 0, 0.5);
+  ExpectSample(wide, 3, 30, 0, 45, 180, 0.25);
+  EXPECT_EQ(wide.samples.origin[3], 3U);
+  ReadOptions options;
+  options.columns = "theta_i=names";
+  const Measurement numbers = ReadText("theta_s;10;30\n-20;1;0,5\n45;2;\n", options);
+  ASSERT_EQ(numbers.samples.size(), 3U);
+  ExpectSample(numbers, 1, 30, 0, 20, 0, 0.5);
+  EXPECT_EQ(numbers.set_aside[SetAsideReason::kHole], 1U);
+  EXPECT_NE(MessageOf("theta_s,10,30\n-20,1,0.5\n45,2,3\n").find("--columns"), std::string::npos);
+  // Polar rows by azimuth columns, of one incidence.
+  ReadOptions incidence;
+  incidence.keys = {"theta_i=30"};
+  const Measurement pivot = ReadText("theta\\phi\t0\t120\t180\n20\t0.5\t1\t2\n45\t3\t4\t0.25\n", incidence);
+  ASSERT_EQ(pivot.samples.size(), 6U);
+  ExpectSample(pivot, 0, 30, 0, 20, 0, 0.5);
+  ExpectSample(pivot, 1, 30, 0, 20, 120, 1);
+  ExpectSample(pivot, 5, 30, 0, 45, 180, 0.25);
+  EXPECT_NE(MessageOf("theta\\phi\t0\t120\t180\n20\t0.5\t1\t2\n45\t3\t4\t0.25\n").find("theta_i"), std::string::npos);
+}
+
+TEST(CsvLayouts, VectorsAndHalfAngles) {
+  ExpectTheTwo(
+      ReadText("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,f\n0.5,0,0.8660254037844386,0.3420201433256687,0,0.9396926207859084,0.5\n"
+               "1,0,1.7320508075688772,-0.7071067811865475,0,0.7071067811865476,0.25\n"));
+  // Rusinkiewicz: the half vector at the normal and a difference of 30 degrees is the mirror pair.
+  const Measurement half = ReadText("theta_h,phi_h,theta_d,phi_d,R,G,B\n0,0,30,0,0.5,0.4,0.3\n25,40,0,0,1,1,1\n");
+  ASSERT_EQ(half.samples.size(), 2U);
+  ExpectSample(half, 0, 30, 0, 30, 180, 0.5);
+  ExpectSample(half, 1, 25, 40, 25, 40, 1);
+  EXPECT_EQ(half.channels.names, (std::vector<std::string>{"R", "G", "B"}));
+  const Measurement relative = ReadText("theta_l,theta_v,phi_d,R,G,B\n30,45,180,0.5,0.4,0.3\n");
+  ExpectSample(relative, 0, 30, 0, 45, 180, 0.5);
+  EXPECT_TRUE(relative.isotropic);
+}
+
+TEST(CsvLayouts, ALonePhiIsTheRelativeAzimuth) {
+  const Measurement m = ReadText("theta_i,theta_r,phi,brdf\n30,30,180,5\n30,30,0,0.1\n");
+  ExpectSample(m, 0, 30, 0, 30, 180, 5);  // the mirror direction
+  ExpectSample(m, 1, 30, 0, 30, 0, 0.1);  // the light's own
+  EXPECT_TRUE(m.isotropic);
+  EXPECT_NE(m.conventions.at("azimuths").find("relative to the light"), std::string::npos);
+  // Beside the light's azimuth it is the viewer's.
+  const Measurement viewer = ReadText("theta_i,phi_i,theta_r,phi,brdf\n30,10,40,130,5\n");
+  ExpectSample(viewer, 0, 30, 10, 40, 130, 5);
+}
+
+TEST(CsvLayouts, ChannelsByTheirSiblings) {
+  EXPECT_EQ(ReadText("theta_i,theta_o,brdf_r,brdf_g,brdf_b\n30,40,1,2,3\n").channels.names,
+            (std::vector<std::string>{"R", "G", "B"}));
+  EXPECT_EQ(ReadText("theta_i,theta_o,f_R,f_G,f_B\n30,40,1,2,3\n").channels.names,
+            (std::vector<std::string>{"R", "G", "B"}));
+  EXPECT_EQ(ReadText("theta_i,theta_o,red,green,blue\n30,40,1,2,3\n").samples.values[2][0], 3);
+  EXPECT_EQ(ReadText("theta_i,theta_o,f_R\n30,40,1\n").channels.names, (std::vector<std::string>{"Y"}));
+  EXPECT_NE(MessageOf("theta_i,theta_o,f_R,f_G\n30,40,1,2\n").find("of the channels RGB only 2"), std::string::npos);
+}
+
+TEST(CsvLayouts, ColumnsAreMappedByOptionAndByKey) {
+  ReadOptions options;
+  options.columns = "theta_i=alpha1,theta_o=#2,f=Messwert,dphi=180";
+  const std::string rows = "alpha1;alpha2;Messwert\n30;45;0.25\n";
+  const Measurement m = ReadText(rows, options);
+  ExpectSample(m, 0, 30, 0, 45, 180, 0.25);
+  ExpectSample(ReadText("# columns: theta_i=alpha1,theta_o=#2,f=Messwert,dphi=180\n" + rows), 0, 30, 0, 45, 180, 0.25);
+  options.columns = "theta_i=alpha7,theta_o=#2,f=Messwert";
+  EXPECT_NE(MessageOf(rows, options).find("no column is named 'alpha7'"), std::string::npos);
+  options.columns = "alpha1";
+  EXPECT_NE(MessageOf(rows, options).find("is not MEANING=COLUMN"), std::string::npos);
+  options.columns = "colour=alpha1";
+  EXPECT_NE(MessageOf(rows, options).find("no meaning of a column"), std::string::npos);
+  // The unit may come with the meaning.
+  options.columns = "theta_i=a,theta_o=b,phi_o (rad)=c";
+  const Measurement radians = ReadText("a,b,c,f\n30,45,3.141592653589793,0.25\n", options);
+  ExpectSample(radians, 0, 30, 0, 45, 180, 0.25);
+}
+
+TEST(CsvLayouts, AScanPerBlockOfOneFile) {
+  const Measurement m = ReadText("# AOI: 10\ntheta_s,BSDF\n-20,1\n45,2\n# AOI: 30\ntheta_s,BSDF\n-20,0.5\n45,0.25\n");
+  ASSERT_EQ(m.samples.size(), 4U);
+  ExpectSample(m, 0, 10, 0, 20, 0, 1);
+  ExpectSample(m, 3, 30, 0, 45, 180, 0.25);
+  const Measurement wavelengths =
+      ReadText("wavelength: 450 nm\ntheta_i,theta_o,f\n30,40,1\n30,50,2\nwavelength: 550 nm\n30,40,3\n30,50,4\n");
+  EXPECT_EQ(wavelengths.channels.wavelengths_nm, (std::vector<double>{450, 550}));
+  ASSERT_EQ(wavelengths.samples.size(), 2U);
+  EXPECT_EQ(wavelengths.samples.values[1][1], 4);
+}
+
+TEST(CsvLayouts, ASampleThatIsTurned) {
+  const Measurement column =
+      ReadText("theta_i,phi_i,theta_o,phi_o,sample_rotation,f\n30,0,40,90,20,1\n30,0,40,90,50,2\n");
+  ExpectSample(column, 0, 30, -20, 40, 70, 1);
+  ExpectSample(column, 1, 30, -50, 40, 40, 2);
+}
+
+}  // namespace
+}  // namespace lobefit

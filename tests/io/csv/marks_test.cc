@@ -1,0 +1,113 @@
+// Marks for no value, rows that are chosen, columns that tell rows apart, channels chosen before rows are judged.
+#include "tests/io/csv/read_csv.h"
+
+namespace lobefit {
+namespace {
+
+TEST(CsvMarks, WordsForNoValueSetTheSampleAside) {
+  for (const char* word :
+       {"OVER",    "SAT",     "saturated", "-",        "--",        "N/A",    "#N/A", "#DIV/0!",
+        "1.#QNAN", "-1.#IND", "1.#INF",    "nan(ind)", "-nan(ind)", "<0.001", "> 10", "***",
+        "null",    "None",    "",          "\"\"",     "overflow",  "n.d.",   "####", "\xe2\x80\x94"}) {
+    const Measurement m = ReadText("theta_i,theta_o,f\n10,20,1\n10,30," + std::string(word) + "\n10,40,2\n");
+    EXPECT_EQ(m.samples.size(), 2U) << word;
+    EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 1U) << word;
+    EXPECT_TRUE(HasRemark(m, "1 field without a number")) << word;
+    EXPECT_TRUE(HasRemark(m, "line 3")) << word;
+  }
+  EXPECT_EQ(ReadText("theta_i,theta_o,f\n10,20,1\n10,30,nan\n10,30,inf\n").set_aside[SetAsideReason::kNotFinite], 2U);
+  EXPECT_NE(MessageOf("theta_i,theta_o,f\n10,20,1\n10,30,twelve\n").find("which is not a number"), std::string::npos);
+}
+
+TEST(CsvMarks, NumbersAndWordsOfTheUser) {
+  ReadOptions options;
+  options.no_value = "0,-999,shade";
+  const Measurement m = ReadText("theta_i,theta_o,f\n10,20,1\n10,30,0\n10,40,-999.0\n10,50,Shade\n10,60,-1\n", options);
+  EXPECT_EQ(m.samples.size(), 2U);
+  EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 3U);
+  options.no_value = "0,,1";
+  EXPECT_NE(MessageOf("theta_i,theta_o,f\n10,20,1\n", options).find("an item is empty"), std::string::npos);
+}
+
+TEST(CsvMarks, RowsAreChosenByAColumn) {
+  const std::string text = "theta_i,theta_o,pol,run,f\n10,20,s,1,1\n10,20,p,1,3\n10,30,s,2,5\n10,30,p,2,7\n";
+  ReadOptions options;
+  options.where = "pol=S";
+  const Measurement s = ReadText(text, options);
+  ASSERT_EQ(s.samples.size(), 2U);
+  EXPECT_EQ(s.samples.values[0][1], 5);
+  EXPECT_EQ(s.set_aside[SetAsideReason::kOutsideSelection], 2U);
+  options.where = "pol=p,run=2.0";
+  EXPECT_EQ(ReadText(text, options).samples.values[0][0], 7);
+  EXPECT_EQ(ReadText("# where: pol=p, run=1\n" + text).samples.values[0][0], 3);
+  options.where = "polarisation=s";
+  EXPECT_NE(MessageOf(text, options).find("no column is named 'polarisation', which --where asks for"),
+            std::string::npos);
+  // A known column too.
+  options.where = "wavelength=550";
+  EXPECT_EQ(ReadText("wavelength,theta_i,theta_o,f\n450,10,20,1\n550,10,20,2\n", options).channels.names,
+            (std::vector<std::string>{"550nm"}));
+}
+
+TEST(CsvMarks, PolarisationsAreAveragedToUnpolarisedLight) {
+  const Measurement m = ReadText("theta_i,theta_o,pol,f\n10,20,s,1\n10,20,p,3\n10,20,p,5\n10,30,s,5\n");
+  ASSERT_EQ(m.samples.size(), 1U);
+  EXPECT_EQ(m.samples.values[0][0], 2.5);             // (1 + (3 + 5) / 2) / 2
+  EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 1U);  // 30 degrees lacks p
+  EXPECT_TRUE(HasRemark(m, "averaged to f_r of unpolarised light"));
+  const Measurement given = ReadText("theta_i,theta_o,pol,f\n10,20,s,1\n10,20,p,3\n10,20,unpolarised,2.1\n");
+  EXPECT_EQ(given.samples.values[0][0], 2.1);
+}
+
+TEST(CsvMarks, AColumnThatTellsRowsApartIsNamed) {
+  const Measurement m = ReadText("theta_i,theta_o,side,f\n10,20,left,1\n10,20,right,3\n10,30,left,2\n");
+  EXPECT_TRUE(HasRemark(m, "rows of the same directions differ in 'side' (left, right)"));
+  EXPECT_TRUE(HasRemark(m, "--where \"side=left\""));
+  EXPECT_FALSE(HasRemark(ReadText("theta_i,theta_o,side,f\n10,20,left,1\n10,20,left,3\n"), "differ in"));
+}
+
+TEST(CsvMarks, ChannelsAreChosenBeforeRowsAreJudged) {
+  ReadOptions options;
+  options.channels = "450,550";
+  const std::string columns = "theta_i,theta_o,450nm,550nm,1050nm\n10,20,1,2,nan\n10,30,3,4,\n10,40,5,6,7\n";
+  EXPECT_EQ(ReadText(columns, options).samples.size(), 3U);
+  EXPECT_EQ(ReadText(columns).samples.size(), 1U);
+  EXPECT_EQ(ReadText(columns).set_aside[SetAsideReason::kHole], 2U);
+  const std::string rows =
+      "wavelength,theta_i,theta_o,f\n450,10,20,1\n550,10,20,2\n450,10,30,3\n550,10,30,4\n1050,10,30,5\n";
+  EXPECT_EQ(ReadText(rows, options).samples.size(), 2U);
+  EXPECT_EQ(ReadText(rows).samples.size(), 1U);
+  EXPECT_NE(MessageOf("theta_i,theta_o,450nm,1050nm\n10,20,1,nan\n")
+                .find("choose channels that were measured with --channels"),
+            std::string::npos);
+}
+
+TEST(CsvMarks, AWavelengthThatWandersIsOneChannel) {
+  const Measurement one = ReadText("wavelength,theta_i,theta_o,f\n632.81,10,20,1\n632.79,10,30,2\n632.8,10,40,3\n");
+  EXPECT_EQ(one.channels.names, (std::vector<std::string>{"632.8nm"}));
+  EXPECT_EQ(one.samples.size(), 3U);
+  EXPECT_TRUE(HasRemark(one, "3 wavelengths that wander"));
+  const Measurement two =
+      ReadText("wavelength,theta_i,theta_o,f\n450.1,10,20,1\n550.2,10,20,2\n449.9,10,30,3\n549.8,10,30,4\n");
+  EXPECT_EQ(two.channels.wavelengths_nm, (std::vector<double>{450, 550}));
+  EXPECT_EQ(two.samples.size(), 2U);
+  // Two lasers that are close are two channels where both were used.
+  const Measurement lasers =
+      ReadText("wavelength,theta_i,theta_o,f\n632.8,10,20,1\n635,10,20,2\n632.8,10,30,3\n635,10,30,4\n");
+  EXPECT_EQ(lasers.channels.wavelengths_nm, (std::vector<double>{632.8, 635}));
+}
+
+TEST(CsvMarks, AnglesThatNamesOrUnitsBelie) {
+  std::string radians = "theta_i,phi_i,theta_o,phi_o,f\n", exchanged = radians, mixed = radians;
+  for (int k = 0; k < 12; ++k) {
+    radians += "0.5,0," + std::to_string(0.1 * k) + "," + std::to_string(0.5 * k) + ",1\n";
+    exchanged += "30,0," + std::to_string(30 * k) + "," + std::to_string(5 * k) + ",1\n";
+    mixed += "30,0," + std::to_string(5 * k) + "," + std::to_string(0.5 * k) + ",1\n";
+  }
+  EXPECT_TRUE(HasRemark(ReadText(radians), "are they radians? --angle-unit rad"));
+  EXPECT_TRUE(HasRemark(ReadText(exchanged), "are the names of polar angle and azimuth exchanged?"));
+  EXPECT_TRUE(HasRemark(ReadText(mixed), "are the azimuths radians?"));
+}
+
+}  // namespace
+}  // namespace lobefit

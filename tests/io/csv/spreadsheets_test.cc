@@ -1,0 +1,91 @@
+// One table in the shapes in which spreadsheets and programs hand it over.
+#include "tests/io/csv/read_csv.h"
+
+namespace lobefit {
+namespace {
+
+void ExpectTheRows(const Measurement& m) {
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 0, 10, 20, 30, 40, 0.5);
+  ExpectSample(m, 1, 50, 60, 70, 80, 0.25);
+}
+
+TEST(Spreadsheets, EveryShapeOfTheSameTable) {
+  for (const char* text : {
+           "Report;;;;\nSample: "
+           "A1;;;;\nOperator;N.N.;;;\n;;;;\ntheta_i;phi_i;theta_o;phi_o;brdf\n10;20;30;40;0.5\n50;60;70;80;0.25\n",
+           "theta_i,phi_i,theta_o,phi_o,brdf\ndeg,deg,deg,deg,1/sr\n10,20,30,40,0.5\n50,60,70,80,0.25\n",
+           "theta_i,phi_i,theta_o,phi_o,brdf\n[°],[°],[°],[°],[sr^-1]\n10,20,30,40,0.5\n50,60,70,80,0.25\n",
+           "sep=;\ntheta_i;phi_i;theta_o;phi_o;brdf\n10;20;30;40;0.5\n50;60;70;80;0.25\n",
+           "theta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\n,,,,\n50,60,70,80,0.25\n,,,,\n\n",
+           "theta_i\tphi_i\ttheta_o\tphi_o\tbrdf\t\n10\t20\t30\t40\t0.5\t\n50\t60\t70\t80\t0.25\t\n",
+           "theta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5,\n50,60,70,80,0.25,\n",
+           "\"theta_i\",\"phi_i\",\"theta_o\",\"phi_o\",\"brdf\"\n\"10\",\"20\",\"30\",\"40\",\"0.5\"\n\"50\",\"60\","
+           "\"70\",\"80\",\"0.25\"\n",
+           ",theta_i,phi_i,theta_o,phi_o,brdf\n0,10,20,30,40,0.5\n1,50,60,70,80,0.25\n",
+           "\"\",\"theta_i\",\"phi_i\",\"theta_o\",\"phi_o\",\"brdf\"\n\"1\",10,20,30,40,0.5\n\"2\",50,60,70,80,0.25\n",
+           "theta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\n50,60,70,80,0.25\nEnd of data\n",
+           "theta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\n50,60,70,80,0.25\n\nMean,,,,0.375\n",
+           "Illumination,,Viewing,,\ntheta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\n50,60,70,80,0.25\n",
+           "Illumination,,Viewing,,\ntheta,phi,theta,phi,BRDF\n10,20,30,40,0.5\n50,60,70,80,0.25\n",
+           "theta_i;phi_i;theta_o;phi_o;brdf\n10;20;30;40;0,5\n50;60;70;80;0,25\n",
+           "theta_i\tphi_i\ttheta_o\tphi_o\tbrdf\n10,0\t20\t30\t40\t5,0E-01\n50\t60\t70\t80\t0,25\n",
+           "theta_i;phi_i;theta_o;phi_o;brdf\n\"10\";\"20\";\"30\";\"40\";\"0,5\"\n\"50\";\"60\";\"70\";\"80\";\"0,"
+           "25\"\n",
+           "theta_i|phi_i|theta_o|phi_o|brdf\n10|20|30|40|0.5\n50|60|70|80|0.25\n",
+           "theta_i,phi_i,theta_o,phi_o,comment,brdf\n10,20,30,40,\"dull, grey\",0.5\n50,60,70,80,\"a "
+           "\"\"b\"\"\",0.25\n",
+           "\"theta_i\n(deg)\",\"phi_i\n(deg)\",theta_o,phi_o,brdf\n10,20,30,40,0.5\n50,60,70,80,0.25\n",
+           "theta_i,phi_i,theta_o,phi_o,brdf\r\n10,20,30,40,0.5\r\n50,60,70,80,0.25",
+           "theta_i,phi_i,theta_o,phi_o,brdf\r\r\n10,20,30,40,0.5\r\r\n50,60,70,80,0.25\r\r\n",
+           "theta_i,phi_i,theta_o,phi_o,brdf\r10,20,30,40,0.5\r50,60,70,80,0.25\r",
+           "\xef\xbb\xbf# a comment\ntheta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\n50,60,70,80,0.25\n",
+           "theta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\ntheta_i,phi_i,theta_o,phi_o,brdf\n50,60,70,80,0.25\n",
+           "theta_i phi_i theta_o phi_o brdf\n10 20 30 40 0.5\n50 60 70 80 0.25\n",
+           "Messung vom 1.1.\nProbe A1\n\ntheta_i phi_i theta_o phi_o brdf\n10 20 30 40 0.5\n50 60 70 80 0.25\n",
+       }) {
+    SCOPED_TRACE(text);
+    ExpectTheRows(ReadText(text));
+  }
+}
+
+TEST(Spreadsheets, Utf16WithAndWithoutItsMark) {
+  const std::string text = "theta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\n50,60,70,80,0.25\n";
+  for (const bool big : {false, true}) {
+    for (const bool mark : {false, true}) {
+      std::string wide = !mark ? "" : big ? "\xfe\xff" : "\xff\xfe";
+      for (const char c : text) {
+        if (big) wide += '\0';
+        wide += c;
+        if (!big) wide += '\0';
+      }
+      const Measurement m = ReadText(wide);
+      ExpectTheRows(m);
+      EXPECT_TRUE(HasRemark(m, "UTF-16"));
+    }
+  }
+}
+
+TEST(Spreadsheets, UnitsOfARowBelowTheNames) {
+  const Measurement m = ReadText(
+      "wavelength,theta_i,theta_o,reflectance factor\num,rad,rad,%\n0.55,0.5235987755982988,0.7853981633974483,50\n");
+  ExpectSample(m, 0, 30, 0, 45, 180, 0.5 / kPi);
+  EXPECT_EQ(m.channels.wavelengths_nm, (std::vector<double>{550}));
+}
+
+TEST(Spreadsheets, WhatIsRefusedSaysWhy) {
+  EXPECT_NE(MessageOf("theta_i;theta_o;f\n10;20;1.234,5\n").find("separators between thousands"), std::string::npos);
+  EXPECT_NE(MessageOf("theta_i;theta_o;f\n10.5;20;0,5\n").find("some a decimal point"), std::string::npos);
+  // Words amid the rows are no footer.
+  EXPECT_NE(MessageOf("theta_i,theta_o,f\n10,20,1\nfirst part ended\n10,30,1\n").find("line 3"), std::string::npos);
+  // A lone quote does not swallow the rest.
+  EXPECT_NE(MessageOf("theta_i,theta_o,f\n10,20,\"1\n10,30,1\n").find("line 2"), std::string::npos);
+}
+
+TEST(Spreadsheets, TheFooterIsSaid) {
+  const Measurement m = ReadText("theta_i,theta_o,f\n10,20,1\nEnd of data\nsigned, N.N.\n");
+  EXPECT_TRUE(HasRemark(m, "2 lines after the last row, from line 3 on, hold no row: 'End of data'"));
+}
+
+}  // namespace
+}  // namespace lobefit
