@@ -19,6 +19,7 @@ struct ConvertVerb {
   MeasurementOptions measurement;
   std::vector<std::string> files;  // inputs, then the output
   std::string format;
+  bool isotropic = false;
 };
 
 std::string FormatNames() {
@@ -48,7 +49,8 @@ int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
   const std::vector<std::string> in(verb.files.begin(), verb.files.end() - 1);
   const std::string& out = verb.files.back();
   const WriteFormat& format = FindWriteFormat(name, out);
-  const Measurement measurement = verb.measurement.Load(in);
+  Measurement measurement = verb.measurement.Load(in);
+  measurement.isotropic = measurement.isotropic || verb.isotropic;
   WriteSource source;
   source.measurement = &measurement;
   source.channels = measurement.channels;
@@ -80,6 +82,8 @@ std::function<int()> SetUpConvert(CLI::App* app, CommonOptions* common) {
                   "whose ending chooses the format")
       ->required();
   app->add_option("--to", verb->format, "format to write: " + FormatNames());
+  app->add_flag("--isotropic", verb->isotropic,
+                "the sample is isotropic: light from one azimuth stands for light from all");
   verb->measurement.AddTo(app);
   return [=] { return RunConvert(*verb, *common); };
 }

@@ -78,9 +78,9 @@ bool HasOneAzimuth(const Samples& samples) {
   return true;
 }
 
-// The samples of one azimuth as those of an isotropic surface. A table over (theta_h, theta_d, phi_d) can be filled
-// from them only where they come near every part of it; in a plane they do not.
-BrdfFunction IsotropicFunction(const Measurement& measurement) {
+// The samples of one azimuth as those of an isotropic surface. A table of `format` over (theta_h, theta_d, phi_d) can
+// be filled from them only where they come near every part of it; in a plane they do not.
+BrdfFunction IsotropicFunction(const Measurement& measurement, const std::string& format) {
   constexpr double kNear = 10 * kPi / 180, kGrazing = 75 * kPi / 180, kLeastShare = 0.9;
   constexpr int kSteps = 12;
   Measurement isotropic = measurement;
@@ -105,8 +105,9 @@ BrdfFunction IsotropicFunction(const Measurement& measurement) {
                 ": " + std::to_string(100 * near[third] / std::max(1, all[third])) + " %";
     }
     throw UsageError(
-        "a MERL table cannot be filled from this measurement: light from one azimuth is taken as that of an "
-        "isotropic surface, but only " +
+        format +
+        " cannot be filled from this measurement: light from one azimuth is taken as that of an isotropic surface, but "
+        "only " +
         std::to_string(100 * near_cells / all_cells) +
         " % of the table (to 75 degrees) lies within 10 degrees of a sample; by theta_d in degrees, " + shares +
         "; measure more incidences and out of their plane, or write it as alta or csv");
@@ -115,21 +116,33 @@ BrdfFunction IsotropicFunction(const Measurement& measurement) {
 }
 
 Paths WriteMerlFormat(const WriteSource& source, const WriteOptions& options, const Path& path) {
-  const bool by_azimuth =
-      source.measurement != nullptr && !source.isotropic && HasOneAzimuth(source.measurement->samples);
-  // By construction the function does not depend on the azimuth, whatever the interpolation makes of the mirror
-  // direction, where phi_d is not defined.
-  const double tolerance = by_azimuth ? std::numeric_limits<double>::infinity() : 1e-3;
-  WriteMerl(by_azimuth ? IsotropicFunction(*source.measurement) : FunctionOf(source), source.channels,
+  const bool by_azimuth = source.measurement != nullptr && HasOneAzimuth(source.measurement->samples);
+  // By construction the function does not depend on the azimuth, whatever interpolation or a table's own rows make of
+  // the mirror direction, where phi_d is not defined.
+  const double tolerance = by_azimuth || source.isotropic ? std::numeric_limits<double>::infinity() : 1e-3;
+  WriteMerl(by_azimuth ? IsotropicFunction(*source.measurement, "a MERL table") : FunctionOf(source), source.channels,
             {options.merl_cell, tolerance}, path);
   return {path};
+}
+
+// The function for a table that keeps the azimuth of the sample. From light at one azimuth it would be extrapolated all
+// round, unless the surface is isotropic.
+BrdfFunction FunctionOfAllAzimuths(const WriteSource& source, const std::string& format) {
+  if (source.measurement == nullptr || !HasOneAzimuth(source.measurement->samples)) return FunctionOf(source);
+  if (!source.isotropic) {
+    throw UsageError(
+        "the light of this measurement has one azimuth, and " + format +
+        " holds f_r at all of them: if the sample is isotropic, say so with --isotropic; else measure more "
+        "azimuths, or write it as csv or alta");
+  }
+  return IsotropicFunction(*source.measurement, format);
 }
 
 Paths WriteRglFormat(const WriteSource& source, const WriteOptions& options, const Path& path) {
   RglWriteOptions rgl = options.rgl;
   rgl.isotropic = source.isotropic;
   if (source.measurement != nullptr) rgl.description = "lobefit, from " + source.measurement->source;
-  WriteRgl(FunctionOf(source), source.channels, rgl, path);
+  WriteRgl(FunctionOfAllAzimuths(source, "an RGL table"), source.channels, rgl, path);
   return {path};
 }
 
@@ -145,7 +158,7 @@ Paths WriteTensorTreeFormat(const WriteSource& source, const WriteOptions& optio
   TensorTreeOptions tree;
   tree.isotropic = source.isotropic;
   tree.log2_resolution = options.tensor_tree_log2;
-  WriteTensorTree(FunctionOf(source), source.channels, tree, path);
+  WriteTensorTree(FunctionOfAllAzimuths(source, "a tensor tree"), source.channels, tree, path);
   return {path};
 }
 
@@ -183,7 +196,7 @@ void AddWords(const WriteSource& source, const WriteFormat& format, const WriteO
     conversion->losses.emplace_back("R G B became CIE X Y Z (sRGB primaries)");
   }
   if (name == "tensor-tree" && source.channels.names == std::vector<std::string>{"R", "G", "B"}) {
-    conversion->losses.emplace_back("R G B became CIE Y, u', v' (sRGB primaries)");
+    conversion->losses.emplace_back("R G B became CIE Y, u', v' of Radiance's primaries and white");
   }
 }
 

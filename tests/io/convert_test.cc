@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/io/read.h"
 #include "lobefit/io/write.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/measurement/interpolation.h"
 #include "lobefit/synthesis/synthesis.h"
 
 namespace lobefit {
@@ -57,6 +60,42 @@ TEST(Convert, EveryFormatReportsWhatItLost) {
     }
     EXPECT_LT(conversion.difference.median, most_median.at(name)) << name;
     EXPECT_GT(conversion.difference.compared, 1000U) << name;
+  }
+}
+
+// From one azimuth of the light a table of all azimuths would be extrapolated all round: refused, unless the sample is
+// isotropic by its owner's word.
+TEST(Convert, TablesOfAllAzimuthsFromOneAreRefusedOrIsotropic) {
+  TestBrdf brdf;
+  brdf.alpha_x = brdf.alpha_y = 0.4;
+  brdf.tilt = brdf.rotation = 0;
+  GoniometerLayout layout;
+  for (int theta = 0; theta <= 75; theta += 15) layout.polar_angles.push_back(DegreesToRadians(theta));
+  layout.azimuths = {0.5};
+  layout.detector_step = DegreesToRadians(6);
+  const BrdfFunction grey = [&](const Vec3& wi, const Vec3& wo, double* values) { values[0] = brdf(wi, wo); };
+  Measurement m = Synthesise(Goniometer(layout), {{"Y"}, {}}, grey, {}, 1);
+  WriteOptions options;
+  options.tensor_tree_log2 = 4;
+  for (const char* name : {"rgl", "tensor-tree"}) {
+    const TemporaryFile file;
+    m.isotropic = false;
+    try {
+      Convert({&m, nullptr, m.channels, false}, FindWriteFormat(name, "x"), options, file.path());
+      FAIL() << name;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("--isotropic"), std::string::npos);
+    }
+    EXPECT_FALSE(std::filesystem::exists(file.path()));
+    m.isotropic = true;
+    Convert({&m, nullptr, m.channels, true}, FindWriteFormat(name, "x"), options, file.path());
+    // At an azimuth where nothing was measured.
+    const Measurement back = ReadMeasurement(file.path());
+    const BrdfFunction table = Interpolate(back);
+    double value[3] = {};
+    const Vec3 wi = FromSpherical(0.5, 2.5), wo = FromSpherical(0.4, 5.2);
+    table(wi, wo, value);
+    EXPECT_NEAR(value[0] / brdf(wi, wo), 1, 0.1) << name;
   }
 }
 

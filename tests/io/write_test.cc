@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/io/alta/writer.h"
 #include "lobefit/io/bsdf_xml/writer.h"
 #include "lobefit/io/csv/writer.h"
@@ -151,13 +152,36 @@ TEST(WriteTensorTree, ColoursAndMergedCellsStayWithinTheTolerance) {
   options.log2_resolution = 4;
   WriteTensorTree(Rgb(brdf), kRgb, options, file.path());
   const Measurement m = ReadMeasurement(file.path());
-  EXPECT_EQ(m.channels.names, (std::vector<std::string>{"X", "Y", "Z"}));
+  EXPECT_EQ(m.channels.names, (std::vector<std::string>{"R", "G", "B"}));
   EXPECT_LT(m.samples.size(), 65536U);
   for (std::size_t i = 0; i < m.samples.size(); ++i) {
-    const double f = brdf(m.samples.wi(i), m.samples.wo(i));
-    // A merged cell's centre may differ from its mean by the tolerance on either side.
-    ASSERT_NEAR(m.samples.values[1][i] / (f * (0.2126 + 0.7152 / 2 + 0.0722 / 4)), 1, 0.06) << i;
+    double f[3] = {};
+    Rgb(brdf)(m.samples.wi(i), m.samples.wo(i), f);
+    // A merged cell's centre may differ from its mean by the tolerance on either side, in luminance and in colour.
+    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(m.samples.values[c][i] / f[c], 1, 0.08) << i;
   }
+}
+
+// Radiance loses the colour of a diffuse part in a tree of rank 3; grey needs no colour.
+TEST(WriteTensorTree, RankAndBlocksThatRadianceReads) {
+  TensorTreeOptions options;
+  options.isotropic = true;
+  options.log2_resolution = 3;
+  const auto text = [&](double red, double green) {
+    const TemporaryFile file;
+    WriteTensorTree(
+        [&](const Vec3&, const Vec3&, double* values) {
+          values[0] = red / kPi;
+          values[1] = values[2] = green / kPi;
+        },
+        kRgb, options, file.path());
+    return std::string(MappedFile(file.path()).bytes());
+  };
+  EXPECT_NE(text(0.2, 0.1).find("TensorTree4"), std::string::npos);
+  EXPECT_NE(text(0.002, 0.001).find("TensorTree3"), std::string::npos);
+  EXPECT_NE(text(0.2, 0.1).find("CIE-u"), std::string::npos);
+  EXPECT_NE(text(0.2, 0.2).find("TensorTree3"), std::string::npos);
+  EXPECT_EQ(text(0.2, 0.2).find("CIE-u"), std::string::npos);
 }
 
 }  // namespace

@@ -100,9 +100,9 @@ XmlSelection SelectXmlWavelengths(const XmlFile& xml, const XmlSide& chosen, con
     const XmlBlock* first = find(structure.is_tree ? "CIE-u" : "CIE-X");
     const XmlBlock* second = find(structure.is_tree ? "CIE-v" : "CIE-Z");
     if (first == nullptr || second == nullptr) return one(*visible);
-    const Channels xyz = {{"X", "Y", "Z"}, {}};
-    if (structure.is_tree) return {xyz, {*visible, *first, *second}, true};
-    return {xyz, {*first, *visible, *second}, false};
+    // Trees of u', v' are Radiance's, with its colours.
+    if (structure.is_tree) return {{{"R", "G", "B"}, {}}, {*visible, *first, *second}, true};
+    return {{{"X", "Y", "Z"}, {}}, {*first, *visible, *second}, false};
   }
   if (chosen.blocks.size() == 1) return one(chosen.blocks.front());
   std::vector<XmlBlock> sorted = chosen.blocks;

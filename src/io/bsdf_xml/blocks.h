@@ -38,7 +38,7 @@ struct XmlSide {
 XmlSide ChooseXmlSide(const XmlFile& xml, pugi::xml_node layer, const ReadOptions& options);
 
 // What is read: the channels of the measurement and, for each, its block. A tree in CIE Y, u', v' has these three
-// blocks and the channels X, Y, Z.
+// blocks and the channels R, G, B.
 struct XmlSelection {
   Channels channels;
   std::vector<XmlBlock> blocks;

@@ -11,6 +11,7 @@
 
 #include "lobefit/io/bsdf_xml/angle_basis.h"
 #include "lobefit/io/bsdf_xml/blocks.h"
+#include "lobefit/io/bsdf_xml/radiance_color.h"
 #include "lobefit/io/bsdf_xml/tensor_tree.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/io/text/xml_file.h"
@@ -221,7 +222,8 @@ Measurement ReadTrees(const XmlFile& xml, const XmlStructure& structure, const X
     }
     if (selected.yuv) {
       const double u = trees[1].At(centre), v = trees[2].At(centre);
-      values = {cell.value * 9 * u / (4 * v), cell.value, cell.value * (12 - 3 * u - 20 * v) / (4 * v)};
+      const std::array<double, 3> rgb = RadianceRgb({cell.value, u, v});
+      values.assign(rgb.begin(), rgb.end());
     } else {
       values[0] = cell.value;
       for (std::size_t c = 1; c < trees.size(); ++c) values[c] = trees[c].At(centre);

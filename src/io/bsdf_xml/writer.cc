@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "lobefit/base/file.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/bsdf_xml/radiance_color.h"
 #include "lobefit/io/bsdf_xml/tensor_tree.h"
 
 namespace lobefit {
@@ -42,25 +44,42 @@ class Grid {
     });
   }
 
-  // Y, u', v' instead of linear sRGB.
-  void ToLuv() {
+  // Y, u', v' instead of R, G, B.
+  void ToYuv() {
     for (std::size_t i = 0; i < values_[0].size(); ++i) {
-      const double r = static_cast<double>(values_[0][i]), g = static_cast<double>(values_[1][i]),
-                   b = static_cast<double>(values_[2][i]);
-      const double x = 0.4124 * r + 0.3576 * g + 0.1805 * b, y = 0.2126 * r + 0.7152 * g + 0.0722 * b,
-                   z = 0.0193 * r + 0.1192 * g + 0.9505 * b;
-      const double sum = x + 15 * y + 3 * z;
-      // Black has the colour of the white point.
-      values_[0][i] = static_cast<float>(y);
-      values_[1][i] = static_cast<float>(sum > 0 ? 4 * x / sum : 0.1978);
-      values_[2][i] = static_cast<float>(sum > 0 ? 9 * y / sum : 0.4683);
+      const std::array<double, 3> yuv = RadianceYuv(At(i));
+      for (std::size_t c = 0; c < 3; ++c) values_[c][i] = static_cast<float>(yuv[c]);
     }
+  }
+
+  // Whether the three channels are equal everywhere, to single precision.
+  bool IsGrey() const {
+    for (std::size_t i = 0; i < values_[0].size(); ++i) {
+      const auto [low, high] = std::minmax({values_[0][i], values_[1][i], values_[2][i]});
+      if (high - low > 1e-6F * std::fabs(high)) return false;
+    }
+    return true;
+  }
+
+  // Of R, G, B, over the cells whose directions are above the horizon.
+  double LeastLuminance() const {
+    double least = HUGE_VAL;
+    Vec3 wi, wo;
+    for (std::size_t i = 0; i < values_[0].size(); ++i) {
+      if (Directions(i, &wi, &wo)) least = std::min(least, RadianceYuv(At(i))[0]);
+    }
+    return least;
   }
 
   void Write(std::ostream& out, std::size_t block) const { WriteNode(out, values_[block], {0, 0, 0, 0}, size_); }
 
  private:
   using Index = std::array<std::size_t, 4>;
+
+  std::array<double, 3> At(std::size_t cell) const {
+    return {static_cast<double>(values_[0][cell]), static_cast<double>(values_[1][cell]),
+            static_cast<double>(values_[2][cell])};
+  }
 
   std::size_t CellAt(const Index& index) const {
     std::size_t cell = 0;
@@ -132,11 +151,15 @@ struct Wavelength {
   std::string unit, name;
 };
 
+// Radiance takes what exceeds 0.01 / pi everywhere out of a tree as its Lambertian part.
+constexpr double kDiffuseLuminance = 0.005 / kPi;
+constexpr int kFinestOfRank4 = 7;
+
 }  // namespace
 
 void WriteTensorTree(const BrdfFunction& brdf, const Channels& channels, const TensorTreeOptions& options,
                      const std::filesystem::path& path) {
-  const int finest = options.isotropic ? 8 : 7;
+  const int finest = options.isotropic ? 8 : kFinestOfRank4;
   if (options.log2_resolution < 2 || options.log2_resolution > finest) {
     throw UsageError("a tensor tree of 2^" + std::to_string(options.log2_resolution) +
                      " cells along an axis cannot be written; 2 to " + std::to_string(finest) +
@@ -154,14 +177,25 @@ void WriteTensorTree(const BrdfFunction& brdf, const Channels& channels, const T
     throw UsageError("a tensor tree holds R G B, one channel or wavelengths, not " + Excerpt(Join(channels.names), 80) +
                      "; convert them with --channels rgb");
   }
-  Grid grid(brdf, channels.size(), options);
-  if (rgb) grid.ToLuv();
+  auto grid = std::make_unique<Grid>(brdf, channels.size(), options);
+  bool isotropic = options.isotropic;
+  if (rgb && grid->IsGrey()) {
+    wavelengths.resize(1);
+  } else if (rgb) {
+    if (isotropic && grid->LeastLuminance() > kDiffuseLuminance) {
+      TensorTreeOptions rank4 = options;
+      rank4.isotropic = isotropic = false;
+      rank4.log2_resolution = std::min(options.log2_resolution, kFinestOfRank4);
+      grid = std::make_unique<Grid>(brdf, channels.size(), rank4);
+    }
+    grid->ToYuv();
+  }
   WriteFileAtomically(path, [&](std::ostream& out) {
     out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<WindowElement xmlns=\"http://windows.lbl.gov\">\n"
            "<WindowElementType>System</WindowElementType>\n<FileType>BSDF</FileType>\n<Optical>\n<Layer>\n"
            "<Material>\n<Name>lobefit</Name>\n<Manufacturer>lobefit</Manufacturer>\n</Material>\n"
            "<DataDefinition>\n<IncidentDataStructure>TensorTree"
-        << (options.isotropic ? 3 : 4) << "</IncidentDataStructure>\n</DataDefinition>\n";
+        << (isotropic ? 3 : 4) << "</IncidentDataStructure>\n</DataDefinition>\n";
     for (std::size_t block = 0; block < wavelengths.size(); ++block) {
       out << "<WavelengthData>\n<LayerNumber>System</LayerNumber>\n<Wavelength unit=\"" << wavelengths[block].unit
           << "\">" << wavelengths[block].name
@@ -169,7 +203,7 @@ void WriteTensorTree(const BrdfFunction& brdf, const Channels& channels, const T
              "<WavelengthDataDirection>Reflection Back</WavelengthDataDirection>\n"
              "<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>\n<ScatteringDataType>BRDF</ScatteringDataType>\n"
              "<ScatteringData>\n";
-      grid.Write(out, block);
+      grid->Write(out, block);
       out << "</ScatteringData>\n</WavelengthDataBlock>\n</WavelengthData>\n";
     }
     out << "</Layer>\n</Optical>\n</WindowElement>\n";

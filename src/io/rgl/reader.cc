@@ -31,6 +31,9 @@ double IncidenceMeasure(const std::vector<float>& theta, std::size_t i) {
 // table's float32 angles do not determine (many files end with theta_i = float(pi / 2)).
 constexpr double kHorizon = 1e-3;
 
+// Micro normals nearer to the surface's than this are it: a column of the table at u.x = 0.
+constexpr double kAtNormal = 1e-9;
+
 // One slice of the table: the nodes of one viewer's direction.
 class Slice {
  public:
@@ -78,12 +81,16 @@ class Slice {
     return 0.5 * Measure(At(Vec2{point.x + (first ? inwards : -inwards), point.y}));
   }
 
-  // Hands the usable nodes to the builder. `valid_bit` is the bit of the mask that means a reliable node.
-  void Read(std::uint8_t valid_bit, MeasurementBuilder* builder) const {
+  // Hands the usable nodes to the builder. `valid_bit` is the bit of the mask that means a reliable node. Nodes whose
+  // half vector is the normal are one pair of directions, whatever their azimuth: their mean is one sample.
+  void Read(std::uint8_t valid_bit, MeasurementBuilder* builder, std::size_t* at_normal) const {
     const double sigma = Bilinear(tables_.sigma.values.data(), tables_.sigma.width(), tables_.sigma.height(),
                                   {RglX(theta_), RglY(phi_)});
     const double cell = IncidenceMeasure(tables_.theta, index_ % tables_.theta.size());
-    std::vector<double> values(tables_.spectra.shape[2]);
+    const std::size_t channels = tables_.spectra.shape[2];
+    std::vector<double> values(channels), mean(channels, 0.0);
+    std::size_t first = 0, count = 0;
+    double measure = 0;
     for (std::size_t i = 0; i < nodes(); ++i) {
       const Node node = At(i);
       const std::size_t index = index_ * nodes() + i;
@@ -95,18 +102,40 @@ class Slice {
         builder->Skip(SetAsideReason::kFlagged);
         continue;
       }
-      double factor = 1 / node.light.z;
-      if (tables_.jacobian) {
-        factor *= Bilinear(tables_.ndf.values.data(), tables_.ndf.width(), tables_.ndf.height(), node.u) / (4 * sigma);
+      Evaluate(i, node, sigma, &values);
+      if (node.theta_m < kAtNormal) {
+        if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) {
+          builder->Skip(SetAsideReason::kNotFinite);
+          continue;
+        }
+        if (count == 0) first = i;
+        for (std::size_t c = 0; c < channels; ++c) mean[c] += values[c];
+        measure += SolidAngle(i, node);
+        ++count;
+        continue;
       }
-      const float* value = &tables_.spectra.values[index_ * values.size() * nodes() + i];
-      for (std::size_t c = 0; c < values.size(); ++c) values[c] = factor * static_cast<double>(value[c * nodes()]);
       if (!builder->Add(node.light, viewer_, values.data(), static_cast<std::uint32_t>(index))) continue;
       builder->measurement().samples.solid_angle.push_back(cell * SolidAngle(i, node));
     }
+    if (count == 0) return;
+    for (double& value : mean) value /= static_cast<double>(count);
+    *at_normal += count - 1;
+    for (std::size_t k = 1; k < count; ++k) builder->Skip(SetAsideReason::kDuplicate);
+    const Node node = At(first);
+    if (!builder->Add(node.light, viewer_, mean.data(), static_cast<std::uint32_t>(index_ * nodes() + first))) return;
+    builder->measurement().samples.solid_angle.push_back(cell * measure);
   }
 
  private:
+  void Evaluate(std::size_t i, const Node& node, double sigma, std::vector<double>* values) const {
+    double factor = 1 / node.light.z;
+    if (tables_.jacobian) {
+      factor *= Bilinear(tables_.ndf.values.data(), tables_.ndf.width(), tables_.ndf.height(), node.u) / (4 * sigma);
+    }
+    const float* value = &tables_.spectra.values[index_ * values->size() * nodes() + i];
+    for (std::size_t c = 0; c < values->size(); ++c) (*values)[c] = factor * static_cast<double>(value[c * nodes()]);
+  }
+
   Vec2 PointOf(std::size_t node) const {
     const std::size_t width = tables_.spectra.width(), height = tables_.spectra.height();
     return {static_cast<double>(node % width) / static_cast<double>(width - 1),
@@ -154,8 +183,9 @@ Measurement ReadRgl(const InputFile& file, const ReadOptions&) {
 
   MeasurementBuilder builder(RglChannels(tables));
   const std::uint8_t valid_bit = tables.valid.empty() ? 1 : ValidBit(tables, isotropic);
+  std::size_t at_normal = 0;
   for (std::size_t slice = 0; slice < tables.phi.size() * tables.theta.size(); ++slice) {
-    Slice(tables, isotropic, slice).Read(valid_bit, &builder);
+    Slice(tables, isotropic, slice).Read(valid_bit, &builder, &at_normal);
   }
   Measurement measurement = builder.Finish();
   if (measurement.samples.size() > 0) ScaleToMeanOne(&measurement.samples.solid_angle);
@@ -164,6 +194,12 @@ Measurement ReadRgl(const InputFile& file, const ReadOptions&) {
   if (!tables.valid.empty()) {
     measurement.conventions["rgl-valid"] =
         valid_bit == 1 ? "set bits are reliable (recognised)" : "set bits are unreliable (recognised)";
+  }
+  if (at_normal > 0) {
+    measurement.remarks.push_back(
+        "where the half vector is the normal, the rows of a slice are one pair of directions: "
+        "their mean is taken (" +
+        std::to_string(at_normal) + " more values)");
   }
   if (reduction > 1) {
     measurement.conventions["rgl-reduction"] = std::to_string(reduction);

@@ -290,16 +290,23 @@ TEST(BsdfXml, ProjectedSolidAnglesOfATreeAddUpToAHemisphereSquared) {
   }
 }
 
-TEST(BsdfXml, ChromaticityTreesBecomeXyz) {
-  // u' = 9 x / (...), D65: u' = 0.19784, v' = 0.46832 give X = 0.9505 Y, Z = 1.0888 Y.
-  const std::string bytes = File("TensorTree4", Data("CIE-u", "Reflection Back", kTree, "{0.1978398}") +
-                                                    Data("Visible", "Reflection Back", kTree, "{2}") +
-                                                    Data("CIE-v", "Reflection Back", kTree, "{0.4683363}"));
-  const Measurement m = ReadBytes(ReadBsdfXml, bytes);
-  EXPECT_EQ(m.channels.names, (std::vector<std::string>{"X", "Y", "Z"}));
-  EXPECT_NEAR(m.samples.values[0][0], 2 * 0.95047, 1e-4);
-  EXPECT_EQ(m.samples.values[1][0], 2);
-  EXPECT_NEAR(m.samples.values[2][0], 2 * 1.08883, 1e-4);
+// As Radiance reads them: equal energy is white, the primaries are its own.
+TEST(BsdfXml, ChromaticityTreesBecomeRgb) {
+  const auto read = [](double u, double v) {
+    const std::string bytes =
+        File("TensorTree4", Data("CIE-u", "Reflection Back", kTree, "{" + std::to_string(u) + "}") +
+                                Data("Visible", "Reflection Back", kTree, "{2}") +
+                                Data("CIE-v", "Reflection Back", kTree, "{" + std::to_string(v) + "}"));
+    return ReadBytes(ReadBsdfXml, bytes);
+  };
+  const Measurement grey = read(4.0 / 19, 9.0 / 19);
+  EXPECT_EQ(grey.channels.names, (std::vector<std::string>{"R", "G", "B"}));
+  for (const std::vector<double>& values : grey.samples.values) EXPECT_NEAR(values[0], 2, 1e-4);
+  // The chromaticity (0.290, 0.600) is green: u' = 4 x / (-2 x + 12 y + 3), v' = 9 y / (-2 x + 12 y + 3).
+  const Measurement green = read(4 * 0.290 / (-2 * 0.290 + 7.2 + 3), 9 * 0.600 / (-2 * 0.290 + 7.2 + 3));
+  EXPECT_NEAR(green.samples.values[0][0], 0, 1e-4);
+  EXPECT_NEAR(green.samples.values[1][0], 2 / 0.6701, 1e-3);
+  EXPECT_NEAR(green.samples.values[2][0], 0, 1e-4);
 }
 
 TEST(BsdfXml, SaysWhatIsWrongAndWhere) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "tests/support/temporary_file.h"
@@ -11,6 +12,8 @@
 #include "lobefit/io/rgl/angles.h"
 #include "lobefit/io/rgl/brdf.h"
 #include "lobefit/io/rgl/writer.h"
+#include "lobefit/io/write.h"
+#include "lobefit/math/directions.h"
 
 namespace lobefit {
 namespace {
@@ -170,6 +173,79 @@ std::string Cut(const std::filesystem::path& path, std::uint64_t azimuths) {
   std::ostringstream out;
   WriteTensorFile(out, fields);
   return out.str();
+}
+
+// The file with other values in the first column of each slice, where the half vector is the normal: row r of 16 has
+// (0.5 + r / 15) times its value.
+std::string SpreadAtNormal(const std::filesystem::path& path) {
+  const MappedFile mapped(path);
+  std::string bytes(mapped.bytes());
+  const TensorFile file(path, mapped.bytes());
+  const TensorField& field = file.Get("rgb", TensorType::kFloat32, 5);
+  const auto begin = static_cast<std::size_t>(field.bytes.data() - mapped.bytes().data());
+  const std::size_t side = field.shape[4];
+  for (std::size_t at = 0; at < field.count; at += side) {
+    float value = 0;
+    std::memcpy(&value, bytes.data() + begin + 4 * at, 4);
+    value *= 0.5F + static_cast<float>(at / side % side) / static_cast<float>(side - 1);
+    std::memcpy(bytes.data() + begin + 4 * at, &value, 4);
+  }
+  return bytes;
+}
+
+TEST(Rgl, TheMeanIsTakenWhereTheHalfVectorIsTheNormal) {
+  TestBrdf brdf;
+  brdf.alpha_y = brdf.alpha_x = 0.2;
+  brdf.tilt = 0;
+  RglWriteOptions options;
+  options.isotropic = true;
+  options.polar_angles = 6;
+  options.table_size = 16;
+  const TemporaryFile plain, table;
+  WriteRgl(Rgb(brdf), kRgb, options, plain.path());
+  const TemporaryFile spread(SpreadAtNormal(plain.path()));
+  const Measurement m = ReadMeasurement(spread.path());
+  std::size_t at_normal = 0;
+  for (std::size_t i = 0; i < m.samples.size(); ++i) {
+    if (HalfVector(m.samples.wi(i), m.samples.wo(i)).z < 1 - 1e-12) continue;
+    ++at_normal;
+    EXPECT_NEAR(m.samples.values[0][i] / brdf(m.samples.wi(i), m.samples.wo(i)), 1, 1e-3);
+  }
+  EXPECT_EQ(at_normal, 6U);
+  EXPECT_GE(m.set_aside[SetAsideReason::kDuplicate], 6U * 15);
+  // Nothing speaks against a table without the sample's azimuth, however the rows of that column differ.
+  Convert({&m, TabulatedBrdf(spread.path(), m), m.channels, m.isotropic}, FindWriteFormat("merl", "x"), {},
+          table.path());
+  EXPECT_EQ(ReadMeasurement(table.path()).format, "merl");
+}
+
+// Narrow lobes seen close to the horizon, where they change most from one viewer to the next.
+TEST(Rgl, GrazingViewersSeeNarrowLobes) {
+  TestBrdf brdf;
+  brdf.alpha_y = brdf.alpha_x = 0.03;
+  brdf.tilt = 0;
+  const TemporaryFile file;
+  RglWriteOptions options;
+  options.isotropic = true;
+  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  const MappedFile mapped(file.path());
+  const RglBrdf table(file.path(), mapped.bytes());
+  for (const double theta_deg : {50.0, 75.0, 80.0, 84.0, 86.0}) {
+    const Vec3 wo = FromSpherical(DegreesToRadians(theta_deg), 0.3);
+    std::vector<double> errors;
+    for (int k = 0; k < 500; ++k) {
+      // Half vectors within the lobe.
+      const double slope = 0.03 * std::sqrt(k / 500.0 / (1 - 0.9 * k / 500.0)), phi = 2.39996 * k;
+      const Vec3 wh = Normalized(Vec3{-slope * std::cos(phi), -slope * std::sin(phi), 1}), wi = Reflect(wo, wh);
+      if (wi.z < std::cos(DegreesToRadians(88))) continue;
+      double values[3];
+      table.Evaluate(wi, wo, values);
+      errors.push_back(std::fabs(values[0] / brdf(wi, wo) - 1));
+    }
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LT(errors[errors.size() / 2], 0.05) << theta_deg;
+    EXPECT_LT(errors[errors.size() * 9 / 10], 0.2) << theta_deg;
+  }
 }
 
 // A surface that a half turn leaves as it is may store half of the viewers, phi in [-pi, 0]; one with two mirror planes
