@@ -103,6 +103,9 @@ GivenMaterial LoadGiven(const std::string& path) {
   given.material.wavelengths_nm = imported.channels.wavelengths_nm;
   given.material.source.format = imported.format;
   given.material.termination = {true, true, "not fitted"};
+  // What was assumed or left out of the file; people see it, documents keep it.
+  given.material.remarks = imported.remarks;
+  for (const std::string& remark : imported.remarks) fmt::print(stderr, "lobefit: {}: {}\n", path, remark);
   return given;
 }
 

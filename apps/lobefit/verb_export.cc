@@ -15,14 +15,14 @@ namespace lobefit {
 namespace {
 
 struct ExportVerb {
-  std::string material, targets, out = ".", name;
+  std::string material, targets, out = ".", name, map_path;
   bool refit = false, copy = false, list = false;
 };
 
 std::string TargetTable() {
   std::string text;
   for (const Target& target : ExportTargets()) {
-    text += fmt::format("{:<14} {}\n{:<14} load: {}\n", target.name, target.description, "", target.load);
+    text += fmt::format("{:<14} {}\n{:<14} load: {}\n", target.name, target.description, "", LoadText(target, "NAME"));
   }
   return text;
 }
@@ -63,11 +63,16 @@ int RunExport(const ExportVerb& verb, const CommonOptions& common) {
   options.material_file = std::filesystem::path(verb.material).filename().string();
   options.command = common.command;
   options.numbers = verb.refit ? Numbers::kRefitted : verb.copy ? Numbers::kCopied : Numbers::kBetter;
+  options.map_path = verb.map_path;
+  if (!options.map_path.empty() && !options.map_path.ends_with('/')) options.map_path += '/';
   options.threads = common.Threads();
   const Material material = ReadMaterial(verb.material);
-  const std::vector<ExportResult> results = ExportMaterial(material, options);
-  fmt::print("{}", common.json ? ExportJson(material, options, results) : ExportSummary(results));
-  return kExitDone;
+  const ExportOutcome outcome = ExportMaterial(material, options);
+  fmt::print("{}", common.json ? ExportJson(material, options, outcome) : ExportSummary(outcome));
+  if (outcome.refusals.empty()) return kExitDone;
+  fmt::print(stderr, "lobefit: {}: {}; the other targets are written\n", options.material_file,
+             RefusalText(outcome.refusals));
+  return kExitInput;
 }
 
 }  // namespace
@@ -78,6 +83,9 @@ std::function<int()> SetUpExport(CLI::App* app, CommonOptions* common) {
   app->add_option("--to", verb->targets, "targets with commas between; --list shows them");
   app->add_option("--out", verb->out, "folder of the files (default: this one)");
   app->add_option("--name", verb->name, "name of the material and its files (default: that of MATERIAL)");
+  app->add_option(
+      "--map-path", verb->map_path,
+      "folder that pbrt and Mitsuba are to look for normal maps in, from the main scene (default: beside it)");
   CLI::Option* refit = app->add_flag("--refit", verb->refit,
                                      "fit the target's own model to the fit instead of copying its numbers (default: "
                                      "whichever is nearer)");

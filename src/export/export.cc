@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -10,87 +11,95 @@
 #include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
 #include "lobefit/base/version.h"
-#include "lobefit/export/import.h"
+#include "lobefit/export/determined.h"
 #include "lobefit/export/refit.h"
 #include "lobefit/export/targets.h"
+#include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/sel/document.h"
+#include "lobefit/export/targets/shader_text.h"
+#include "lobefit/export/targets/text.h"
+#include "lobefit/renderer/rgb_fit.h"
 
 namespace lobefit {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Why a target cannot hold the material, by `reason_of`; throws with all reasons and the targets that can.
-void CheckRefusals(const ExportOptions& options, const std::function<std::string(const Target&)>& reason_of) {
-  std::vector<std::string> reasons;
-  for (const Target* target : options.targets) {
-    const std::string reason = reason_of(*target);
-    if (!reason.empty()) reasons.push_back(fmt::format("{} cannot hold this material: {}", target->name, reason));
-  }
-  if (reasons.empty()) return;
-  std::vector<std::string> can;
-  for (const Target& target : ExportTargets()) {
-    if (reason_of(target).empty()) can.emplace_back(target.name);
-  }
-  throw InputError(fmt::format("{}: {}; targets that can: {}", options.material_file, Join(reasons, "; "), Join(can)));
-}
+// An albedo above this is more than the error of its quadrature.
+constexpr double kCreatesEnergy = 1.01;
 
-std::string RefusalOfSel(const Target& target) {
-  if (target.write_sel != nullptr) return "";
-  return "it takes a model of the surface, and this is a table of squared ellipsoidal lobes for each incident "
-         "direction";
-}
+// What a target is given: the fit, its error meter, and what was taken out of or changed in it.
+struct Subject {
+  FittedBrdf fit;
+  std::shared_ptr<const ErrorMeter> meter;
+  std::vector<Carried> changes;
+};
 
-std::string ErrorWords(const ExportError& error) {
-  return fmt::format("median {:.2g} %, 90 % within {:.2g} %, at most {:.3g} %, albedo within {:.2g} %",
-                     100 * error.median, 100 * error.percentile_90, 100 * error.maximum, 100 * error.albedo);
-}
-
-// One line for all features with the same fate.
-std::string CarriedLines(const std::vector<Carried>& rows) {
-  std::string text;
-  std::vector<bool> done(rows.size(), false);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (done[i]) continue;
-    std::vector<std::string> features;
-    for (std::size_t j = i; j < rows.size(); ++j) {
-      if (rows[j].how != rows[i].how || rows[j].note != rows[i].note) continue;
-      features.push_back(rows[j].feature);
-      done[j] = true;
+// The fit in the three forms that targets take, each made once.
+class Subjects {
+ public:
+  explicit Subjects(const Material& material) : whole_{FittedBrdf(material), nullptr, {}} {
+    whole_.meter = std::make_shared<const ErrorMeter>(whole_.fit);
+    Determined determined = OnlyDetermined(material);
+    determined_ = std::make_unique<Subject>(
+        Subject{FittedBrdf(std::move(determined.material)), whole_.meter, std::move(determined.left_out)});
+    if (whole_.fit.IsRgbOrGrey()) return;
+    try {
+      MakeRgb(RgbMapOf(whole_.fit));
+    } catch (const UsageError& error) {
+      no_rgb_ = error.what();
     }
-    const char* how = rows[i].how == Carries::kExactly         ? "exactly"
-                      : rows[i].how == Carries::kApproximately ? "approximately"
-                                                               : "NOT CARRIED";
-    text += fmt::format("  {}: {}{}\n", how, Join(features), rows[i].note.empty() ? "" : " (" + rows[i].note + ")");
   }
-  return text;
-}
 
-std::vector<std::string> Header(const Material& material, const ExportOptions& options, const ExportResult& result) {
+  const Subject& For(const Target& target) const {
+    if (target.rgb_only && rgb_) return *rgb_;
+    return std::string_view(target.name) == "json" ? whole_ : *determined_;
+  }
+  std::string Refusal(const Target& target) const {
+    if (target.rgb_only && !whole_.fit.IsRgbOrGrey() && !rgb_) return no_rgb_;
+    return target.refusal == nullptr ? "" : target.refusal(For(target).fit);
+  }
+  const Subject& whole() const { return whole_; }
+
+ private:
+  // The error is that against the fit's own R, G, B.
+  void MakeRgb(const ChannelMap& map) {
+    const FittedBrdf& fit = whole_.fit;
+    const auto meter =
+        std::make_shared<const ErrorMeter>(Apply(map, fit.function(), fit.material().channels.size()), map.channels,
+                                           fit.reflectance().lobe_shapes(), fit.material().source.file);
+    rgb_ = std::make_unique<Subject>(Subject{FittedBrdf(RgbFit(determined_->fit, map)), meter, determined_->changes});
+    rgb_->changes.push_back({Feature::kChannels, Carries::kApproximately, map.description});
+  }
+
+  Subject whole_;
+  std::unique_ptr<Subject> determined_, rgb_;
+  std::string no_rgb_;
+};
+
+std::vector<std::string> Header(const Material& material, const ExportOptions& options, const ExportResult& result,
+                                const std::vector<std::string>& remarks) {
   std::string fit_error;
   for (const MetricError& error : material.errors) fit_error += fmt::format("  {} {:.3g}", error.metric, error.rms);
   std::vector<std::string> lines = {
       fmt::format("{}: exported by lobefit {} from {}", options.name, Version(), options.material_file),
       fmt::format("measurement: {}", material.source.file),
       fmt::format("error of the fit (root mean square):{}", fit_error), fmt::format("command: {}", options.command)};
+  lines.insert(lines.end(), remarks.begin(), remarks.end());
   if (result.numbers == "copied" || result.numbers == "refitted") {
-    lines.push_back(fmt::format("numbers {}; error of this material against the fit: {}", result.numbers,
+    lines.push_back(fmt::format("numbers {}; error of this material relative to the fit's f_r: {}", result.numbers,
                                 ErrorWords(result.error)));
   }
   for (const Carried& row : result.carries) {
     if (row.how == Carries::kExactly) continue;
-    lines.push_back(
-        fmt::format("{}: {}{}", row.feature, row.how == Carries::kNot ? "not carried, " : "approximately, ", row.note));
+    lines.push_back(fmt::format("{}: {}{}", NameOf(row.feature),
+                                row.how == Carries::kNot ? "not carried, " : "approximately, ", row.note));
   }
   // A comment ends with its line.
   for (std::string& line : lines) {
     for (char& c : line) c = static_cast<unsigned char>(c) < 32 ? ' ' : c;
   }
   return lines;
-}
-
-WriteContext ContextOf(const Material& material, const ExportOptions& options, const ExportResult& result) {
-  return {options.folder, options.name, Header(material, options, result), options.threads, ImportMaterial};
 }
 
 // What counts is the file: it is read back where it can be.
@@ -102,107 +111,161 @@ void Complete(const WrittenFiles& written, const ErrorMeter& meter, Clock::time_
   result->seconds = std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-ExportResult ExportTo(const Target& target, const FittedBrdf& fit, const ErrorMeter& meter,
-                      const ExportOptions& options) {
+// Chooses between the fit's numbers and those of the target's own model fitted to it; fills numbers, choice and errors.
+std::optional<FittedBrdf> ChooseNumbers(const Target& target, const Subject& subject, const ExportOptions& options,
+                                        ExportResult* result) {
+  result->numbers = "copied";
+  result->error = subject.meter->Compare(target.evaluate(subject.fit));
+  if (options.numbers == Numbers::kCopied) {
+    result->choice = "as asked";
+    return std::nullopt;
+  }
+  std::optional<FittedBrdf> refitted =
+      Refit(subject.fit, target.own_model(subject.fit), *subject.meter, options.threads);
+  if (!refitted) return std::nullopt;
+  const ExportError error = subject.meter->Compare(target.evaluate(*refitted));
+  const bool better = IsBetter(error, result->error), worse = IsBetter(result->error, error);
+  if (options.numbers == Numbers::kRefitted || better) {
+    result->choice = better ? "which is nearer" : worse ? "as asked, though not nearer" : "as asked, and as near";
+    result->other = result->error;
+    result->error = error;
+    result->numbers = "refitted";
+    return refitted;
+  }
+  result->choice = worse ? "which is nearer" : "which is as near";
+  result->other = error;
+  return std::nullopt;
+}
+
+// What was refitted is not carried unchanged; what was left out or converted before says so.
+void CompleteRows(const Subject& subject, bool refitted, std::vector<Carried>* rows) {
+  for (Carried& row : *rows) {
+    if (refitted && row.how == Carries::kExactly && row.feature != Feature::kChannels) {
+      row = {row.feature, Carries::kApproximately, "refitted"};
+    }
+  }
+  for (const Carried& change : subject.changes) {
+    if (change.feature == Feature::kChannels) {
+      Mark(rows, change.feature, change.how, change.note);
+    } else {
+      rows->push_back(change);
+    }
+  }
+}
+
+ExportResult ExportTo(const Target& target, const Subject& subject, const ExportOptions& options,
+                      const std::vector<std::string>& remarks) {
   const auto start = Clock::now();
   ExportResult result;
   result.target = &target;
-  result.carries = target.carries(fit);
+  result.load = LoadText(target, options.name);
   std::optional<FittedBrdf> refitted;
-  if (target.evaluate != nullptr) {
-    result.numbers = "copied";
-    result.error = meter.Compare(target.evaluate(fit));
-    if (options.numbers != Numbers::kCopied) refitted = Refit(fit, target.own_model(fit), meter, options.threads);
-    if (refitted) {
-      const ExportError error = meter.Compare(target.evaluate(*refitted));
-      if (options.numbers == Numbers::kRefitted || IsBetter(error, result.error)) {
-        result.other = result.error;
-        result.error = error;
-        result.numbers = "refitted";
-      } else {
-        result.other = error;
-        refitted.reset();
-      }
-    }
-  }
-  const WrittenFiles written = target.write(refitted ? *refitted : fit, ContextOf(fit.material(), options, result));
+  if (target.evaluate != nullptr) refitted = ChooseNumbers(target, subject, options, &result);
+  const FittedBrdf& fit = refitted ? *refitted : subject.fit;
+  result.carries = target.carries(subject.fit);
+  CompleteRows(subject, refitted.has_value(), &result.carries);
+  const WrittenFiles written = target.write(
+      fit, {options.folder, options.name, Header(subject.fit.material(), options, result, remarks), options.map_path});
   if (target.evaluate == nullptr) result.numbers = written.exact ? "exact" : "tabulated";
-  Complete(written, meter, start, &result);
+  Complete(written, *subject.meter, start, &result);
   return result;
 }
 
 ExportResult ExportSelTo(const Target& target, const Material& material, const ErrorMeter& meter,
-                         const ExportOptions& options) {
+                         const ExportOptions& options, const std::vector<std::string>& remarks) {
   const auto start = Clock::now();
   ExportResult result;
   result.target = &target;
+  result.load = LoadText(target, options.name);
   result.carries = CarriesSel(material);
   result.numbers = "exact";
-  Complete(target.write_sel(material, ContextOf(material, options, result)), meter, start, &result);
+  Complete(target.write_sel(
+               material, {options.folder, options.name, Header(material, options, result, remarks), options.map_path}),
+           meter, start, &result);
   return result;
 }
 
-std::vector<ExportResult> ExportToAll(const ExportOptions& options,
-                                      const std::function<ExportResult(const Target&)>& export_to) {
-  std::vector<ExportResult> results;
-  Progress progress("exporting", options.targets.size());
+std::vector<std::string> EnergyRemarks(const ErrorMeter& meter) {
+  const ErrorMeter::LargestAlbedo& largest = meter.largest_albedo();
+  if (largest.albedo <= kCreatesEnergy) return {};
+  return {
+      fmt::format("the material reflects more than it receives: an albedo of {:.3f} in {}, seen at {:.0f} degrees from "
+                  "the normal; renderers gain light from it",
+                  largest.albedo, largest.channel, largest.theta_deg)};
+}
+
+// Splits the targets by `reason_of`; throws where none is left.
+std::vector<const Target*> Accepted(const ExportOptions& options,
+                                    const std::function<std::string(const Target&)>& reason_of,
+                                    std::vector<Refusal>* refusals) {
+  std::vector<const Target*> accepted;
   for (const Target* target : options.targets) {
-    results.push_back(export_to(*target));
+    const std::string reason = reason_of(*target);
+    if (reason.empty()) {
+      accepted.push_back(target);
+    } else {
+      refusals->push_back({target, reason});
+    }
+  }
+  if (!accepted.empty()) return accepted;
+  std::vector<std::string> can;
+  for (const Target& target : ExportTargets()) {
+    if (reason_of(target).empty()) can.emplace_back(target.name);
+  }
+  throw InputError(
+      fmt::format("{}: {}; targets that can: {}", options.material_file, RefusalText(*refusals), Join(can)));
+}
+
+void ExportAll(const std::vector<const Target*>& targets, const ExportOptions& options,
+               const std::function<ExportResult(const Target&)>& export_to, ExportOutcome* outcome) {
+  MakeFolder(options.folder);
+  Progress progress("exporting", targets.size());
+  for (const Target* target : targets) {
+    outcome->results.push_back(export_to(*target));
     progress.Advance();
   }
-  return results;
 }
 
-std::vector<ExportResult> ExportSel(const Material& material, const ExportOptions& options) {
-  CheckRefusals(options, RefusalOfSel);
-  MakeFolder(options.folder);
+ExportOutcome ExportSel(const Material& material, const ExportOptions& options) {
+  ExportOutcome outcome;
+  const auto reason_of = [](const Target& target) -> std::string {
+    if (target.write_sel != nullptr) return "";
+    return "it takes a model of the surface, and this is a table of squared ellipsoidal lobes for each incident "
+           "direction";
+  };
+  const std::vector<const Target*> targets = Accepted(options, reason_of, &outcome.refusals);
   const ErrorMeter meter = SelErrorMeter(material);
-  return ExportToAll(options, [&](const Target& target) { return ExportSelTo(target, material, meter, options); });
+  outcome.remarks = EnergyRemarks(meter);
+  ExportAll(
+      targets, options,
+      [&](const Target& target) { return ExportSelTo(target, material, meter, options, outcome.remarks); }, &outcome);
+  return outcome;
 }
 
-std::vector<ExportResult> ExportModel(const Material& material, const ExportOptions& options) {
-  const FittedBrdf fit(material);
-  CheckRefusals(options, [&](const Target& target) { return target.refusal(fit); });
-  MakeFolder(options.folder);
-  const ErrorMeter meter(fit);
-  return ExportToAll(options, [&](const Target& target) { return ExportTo(target, fit, meter, options); });
+ExportOutcome ExportModel(const Material& material, const ExportOptions& options) {
+  ExportOutcome outcome;
+  const Subjects subjects(material);
+  const std::vector<const Target*> targets = Accepted(
+      options, [&](const Target& target) { return subjects.Refusal(target); }, &outcome.refusals);
+  outcome.remarks = EnergyRemarks(*subjects.whole().meter);
+  ExportAll(
+      targets, options,
+      [&](const Target& target) { return ExportTo(target, subjects.For(target), options, outcome.remarks); }, &outcome);
+  return outcome;
 }
 
 }  // namespace
 
-std::vector<ExportResult> ExportMaterial(const Material& material, const ExportOptions& options) {
-  std::vector<ExportResult> results = material.sel ? ExportSel(material, options) : ExportModel(material, options);
-  WriteFileAtomically(options.folder / (options.name + ".export.json"), ExportJson(material, options, results));
-  return results;
+std::string LoadText(const Target& target, const std::string& name) {
+  std::string text = Replaced(target.load, "{glsl}", GlslPrefix(name));
+  text = Replaced(std::move(text), "{id}", Identifier(name));
+  return Replaced(std::move(text), "{name}", name);
 }
 
-std::string ExportSummary(const std::vector<ExportResult>& results) {
-  std::string text = fmt::format("{:<14} {:<10} {:>9} {:>9} {:>9} {:>9}   {}\n", "target", "numbers", "median", "90 %",
-                                 "maximum", "albedo", "files");
-  for (const ExportResult& result : results) {
-    std::vector<std::string> names;
-    for (const std::filesystem::path& file : result.files) names.push_back(file.string());
-    const auto percent = [](double fraction) { return fmt::format("{:.2g} %", 100 * fraction); };
-    text += fmt::format("{:<14} {:<10} {:>9} {:>9} {:>9} {:>9}   {}\n", result.target->name, result.numbers,
-                        percent(result.error.median), percent(result.error.percentile_90),
-                        percent(result.error.maximum), percent(result.error.albedo), Join(names));
-  }
-  text += "Errors: f_r of the exported model against the fit's at the same directions; albedo: largest difference.\n";
-  for (const ExportResult& result : results) {
-    text += fmt::format("{}:\n{}", result.target->name, CarriedLines(result.carries));
-    if (result.other) {
-      const auto words = [](const ExportError& error) {
-        return fmt::format("median {:.2g} %, 90 % within {:.2g} %, albedo {:.2g} %", 100 * error.median,
-                           100 * error.percentile_90, 100 * error.albedo);
-      };
-      text += fmt::format("  numbers {}{}; the {} ones have {}\n", result.numbers,
-                          IsBetter(result.error, *result.other) ? ", which is nearer by median and 90 % together"
-                                                                : " as asked, though not nearer",
-                          result.numbers == "copied" ? "refitted" : "copied", words(*result.other));
-    }
-    for (const std::string& note : result.notes) text += fmt::format("  {}\n", note);
-  }
-  return text;
+ExportOutcome ExportMaterial(const Material& material, const ExportOptions& options) {
+  ExportOutcome outcome = material.sel ? ExportSel(material, options) : ExportModel(material, options);
+  WriteFileAtomically(options.folder / (options.name + ".export.json"), ExportJson(material, options, outcome));
+  return outcome;
 }
 
 }  // namespace lobefit

@@ -24,6 +24,7 @@ struct ExportOptions {
   std::string name;              // of the material; files are NAME and an ending
   std::string material_file;     // for the comments
   std::string command;           // likewise
+  std::string map_path;          // folder before the names of normal maps in the files, "materials/" or ""
   Numbers numbers = Numbers::kBetter;
   int threads = 1;
 };
@@ -34,21 +35,41 @@ struct ExportResult {
   std::uintmax_t bytes = 0;
   std::vector<Carried> carries;
   std::string numbers;               // "exact", "tabulated", "copied" or "refitted"
+  std::string choice;                // in words, why these; "" where there was none
   ExportError error;                 // of what was written
   std::optional<ExportError> other;  // of the numbers that were not taken, where both were tried
+  std::string load;                  // how to load it, with the names of this material
   std::vector<std::string> notes;
   double seconds = 0;
 };
 
-// Writes the files of every target and NAME.export.json, which holds the table (rows of other targets that an earlier
-// export of the same material left there are kept). Throws InputError, before anything is written, where a target
-// cannot hold the material at all: with the reason and the targets that can. Throws OutputError.
-std::vector<ExportResult> ExportMaterial(const Material& material, const ExportOptions& options);
+// A target that cannot hold the material, and why.
+struct Refusal {
+  const Target* target = nullptr;
+  std::string reason;
+};
 
-// The table and the notes, for people.
-std::string ExportSummary(const std::vector<ExportResult>& results);
+struct ExportOutcome {
+  std::vector<ExportResult> results;
+  std::vector<Refusal> refusals;
+  std::vector<std::string> remarks;  // of the material whatever the target
+};
+
+// Writes the files of every target that can hold the material and NAME.export.json, which holds the table (rows of
+// other targets that an earlier export of the same material left there are kept). Tilts and turns that the fit did not
+// determine are left out (OnlyDetermined) but of the document itself; a fit of other channels is converted for targets
+// of R, G, B. Throws InputError, before anything is written, where no target can hold the material: with the reasons
+// and the targets that can. Throws OutputError.
+ExportOutcome ExportMaterial(const Material& material, const ExportOptions& options);
+
+// How to load a target's files of a material of this name.
+std::string LoadText(const Target& target, const std::string& name);
+// The table and the notes, for people; of refusals one line for each reason.
+std::string ExportSummary(const ExportOutcome& outcome);
+std::string RefusalText(const std::vector<Refusal>& refusals);
+// Figures of an error with what they are of, one line.
+std::string ErrorWords(const ExportError& error);
 // As NAME.export.json.
-std::string ExportJson(const Material& material, const ExportOptions& options,
-                       const std::vector<ExportResult>& results);
+std::string ExportJson(const Material& material, const ExportOptions& options, const ExportOutcome& outcome);
 
 }  // namespace lobefit

@@ -13,12 +13,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json LevelsJson(const ErrorLevels& levels) {
+  return {{"median", levels.median},
+          {"percentile_90", levels.percentile_90},
+          {"maximum", levels.maximum},
+          {"compared", levels.compared}};
+}
+
+// The levels over all pairs of directions stand at the top.
 Json ErrorJson(const ExportError& error) {
-  return {{"median", error.median},
-          {"percentile_90", error.percentile_90},
-          {"maximum", error.maximum},
-          {"albedo", error.albedo},
-          {"compared", error.compared}};
+  Json json = {{"relative_to", "the fit's f_r"}, {"floor_per_sr", kErrorFloor}, {"theta_max_deg", 88}};
+  json.update(LevelsJson(error.uniform));
+  json["in_lobe"] = LevelsJson(error.lobe);
+  json["off_lobe"] = LevelsJson(error.off);
+  json["albedo"] = error.albedo;
+  return json;
 }
 
 const char* Words(Carries how) {
@@ -37,15 +46,16 @@ Json ResultJson(const ExportResult& result) {
   Json files = Json::array(), carries = Json::array();
   for (const std::filesystem::path& file : result.files) files.push_back(file.filename().string());
   for (const Carried& row : result.carries) {
-    carries.push_back({{"feature", row.feature}, {"carried", Words(row.how)}, {"note", row.note}});
+    carries.push_back({{"feature", NameOf(row.feature)}, {"carried", Words(row.how)}, {"note", row.note}});
   }
   Json json = {{"target", result.target->name}, {"files", files},
                {"bytes", result.bytes},         {"seconds", result.seconds},
                {"numbers", result.numbers},     {"relative_error", ErrorJson(result.error)}};
   if (result.other) json["relative_error_of_the_other_numbers"] = ErrorJson(*result.other);
+  if (!result.choice.empty()) json["choice"] = result.choice;
   json["carries"] = carries;
   json["notes"] = result.notes;
-  json["load"] = result.target->load;
+  json["load"] = result.load;
   return json;
 }
 
@@ -67,14 +77,22 @@ Json EarlierRows(const std::filesystem::path& path, const std::string& digest,
 
 }  // namespace
 
-std::string ExportJson(const Material& material, const ExportOptions& options,
-                       const std::vector<ExportResult>& results) {
+std::string ExportJson(const Material& material, const ExportOptions& options, const ExportOutcome& outcome) {
   const std::string digest = Sha256Hex(ToJson(material));
-  Json rows = EarlierRows(options.folder / (options.name + ".export.json"), digest, results);
-  for (const ExportResult& result : results) rows.push_back(ResultJson(result));
-  const Json json = {{"material", options.material_file}, {"material_sha256", digest},
-                     {"source", material.source.file},    {"version", Version()},
-                     {"command", options.command},        {"targets", rows}};
+  Json rows = EarlierRows(options.folder / (options.name + ".export.json"), digest, outcome.results);
+  for (const ExportResult& result : outcome.results) rows.push_back(ResultJson(result));
+  Json refused = Json::array();
+  for (const Refusal& refusal : outcome.refusals) {
+    refused.push_back({{"target", refusal.target->name}, {"reason", refusal.reason}});
+  }
+  const Json json = {{"material", options.material_file},
+                     {"material_sha256", digest},
+                     {"source", material.source.file},
+                     {"version", Version()},
+                     {"command", options.command},
+                     {"remarks", outcome.remarks},
+                     {"refused", refused},
+                     {"targets", rows}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

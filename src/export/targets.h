@@ -8,6 +8,7 @@
 
 namespace lobefit {
 
+// In the order in which a file is recognised: formats with a magic number first, then text from strict to loose.
 const std::vector<Target>& ExportTargets();
 
 // Throws UsageError that lists the targets and suggests one.

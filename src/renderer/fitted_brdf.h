@@ -51,6 +51,7 @@ class FittedBrdf {
   bool HasOnlyGgx() const;
   bool HasDiffuse() const;
   bool IsRgbOrGrey() const { return lobefit::IsRgbOrGrey(channels()); }
+  bool IsGrey() const { return material_.channels.size() == 1 && material_.wavelengths_nm.empty(); }
 
  private:
   Material material_;

@@ -14,6 +14,8 @@ namespace lobefit {
 namespace {
 
 constexpr unsigned kSide = 4;
+// Pixels of a constant map may differ by one step of 8 bits, as an encoder may leave them.
+constexpr double kConstant = 1.01 * 2 / 255;
 
 template <class Value>
 std::string Encode(const std::array<Value, 3>& pixel, png_uint_32 format) {
@@ -79,6 +81,11 @@ Vec3 NormalOfPng(std::string_view png, double scale, const std::filesystem::path
     if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) != 0) {
       const auto* bytes = static_cast<const std::uint8_t*>(static_cast<const void*>(pixels.data()));
       const auto at = [&](std::size_t c) { return 2 * (deep ? pixels[c] / 65535.0 : bytes[c] / 255.0) - 1; };
+      for (std::size_t value = 0; value < values; ++value) {
+        if (std::fabs(at(value) - at(value % 3)) <= kConstant) continue;
+        throw InputError(file.string() + ": the normal map varies (pixel " + std::to_string(value / 3) +
+                         " is not as the first); only a constant one is understood");
+      }
       normal = {scale * at(0), scale * at(1), at(2)};
       if (normal.z > 0) return Normalized(normal);
       throw InputError(file.string() + ": the normal map points into the surface");

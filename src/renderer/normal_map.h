@@ -20,7 +20,8 @@ struct ScaledNormal {
 };
 ScaledNormal ScaledNormalMapPng(const Vec3& normal);
 
-// The normal of the first pixel, x and y times `scale`, of unit length. Throws InputError that names `file`.
+// The normal of a constant map, x and y times `scale`, of unit length. Throws InputError that names `file`, also where
+// the pixels differ.
 Vec3 NormalOfPng(std::string_view png, double scale, const std::filesystem::path& file);
 
 }  // namespace lobefit

@@ -10,6 +10,9 @@
 namespace lobefit {
 namespace {
 
+// Below this a lobe of a mixture is left out.
+constexpr double kNoReflectance = 1e-5;
+
 double Power5(double x) { return x * x * x * x * x; }
 
 // 2 Lambda + 1 = sqrt(1 + tan^2 weighted by the widths) for w in the frame.
@@ -58,7 +61,7 @@ class SurfaceEvaluator {
   }
 
   void Evaluate(const Vec3& wi, const Vec3& wo, double* values) const {
-    std::fill_n(values, 3, 0.0);
+    std::fill_n(values, surface_.diffuse.size(), 0.0);
     if (!(wi.z > 0) || !(wo.z > 0)) return;
     const double cos_d = Dot(wi, HalfVector(wi, wo));
     for (std::size_t l = 0; l < surface_.lobes.size(); ++l) AddLobe(l, wi, wo, cos_d, values);
@@ -73,7 +76,7 @@ class SurfaceEvaluator {
     const double specular = lobe.weight * GgxNdf(lobe.widths, HalfVector(i, o)) *
                             G2(surface_.masking, lobe.widths, i, o) / (4 * o.z * wi.z);
     const double lost = surface_.energy_compensation ? 1 / (*albedos_[l])(o.z, 1, 1) - 1 : 0.0;
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) {
       const double f = lobe.fresnel(c, cos_d);
       values[c] += specular * f * (1 + f * lost);
     }
@@ -84,11 +87,15 @@ class SurfaceEvaluator {
     if (!(cos_i > 0) || !(cos_o > 0)) return;
     double left = 1;
     if (surface_.layering == Surface::Layering::kSchlick) {
-      left = 1 - std::max({surface_.layer(0, cos_d), surface_.layer(1, cos_d), surface_.layer(2, cos_d)});
+      double largest = 0;
+      for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) largest = std::max(largest, surface_.layer(c, cos_d));
+      left = 1 - largest;
     } else if (surface_.layering == Surface::Layering::kAlbedo) {
       left = 1 - LayerAlbedo(Dot(frames_[surface_.layer_lobe].normal, wo));
     }
-    for (std::size_t c = 0; c < 3; ++c) values[c] += surface_.diffuse[c] * left * kInvPi * cos_i / wi.z;
+    for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) {
+      values[c] += surface_.diffuse[c] * left * kInvPi * cos_i / wi.z;
+    }
   }
 
   double LayerAlbedo(double cos_o) const {
@@ -191,6 +198,14 @@ ConductorIndex NearestConductor(const std::function<double(double)>& fresnel) {
   return at(best);
 }
 
+namespace {
+
+// A grey channel is three equal ones.
+std::size_t ChannelsOf(const FittedBrdf& fit) { return fit.IsGrey() ? 3 : fit.material().channels.size(); }
+std::size_t ChannelOf(const FittedBrdf& fit, std::size_t c) { return fit.IsGrey() ? 0 : c; }
+
+}  // namespace
+
 SurfaceLobe LobeOf(const FittedBrdf& fit, std::size_t lobe, double weight) {
   SurfaceLobe result;
   const FittedLobe& fitted = fit.lobes()[lobe];
@@ -198,10 +213,11 @@ SurfaceLobe LobeOf(const FittedBrdf& fit, std::size_t lobe, double weight) {
   result.rotation = fitted.rotation;
   if (fitted.tilt > 1e-6) result.normal = fitted.axis;
   result.weight = weight;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::size_t channel = fit.material().channels.size() == 1 ? 0 : c;
-    result.fresnel.f0[c] = fit.Fresnel(lobe, channel, 1) / weight;
-    result.fresnel.f90[c] = std::min(1.0, fit.Fresnel(lobe, channel, 0) / weight);
+  result.fresnel.f0.resize(ChannelsOf(fit));
+  result.fresnel.f90.resize(ChannelsOf(fit));
+  for (std::size_t c = 0; c < ChannelsOf(fit); ++c) {
+    result.fresnel.f0[c] = fit.Fresnel(lobe, ChannelOf(fit, c), 1) / weight;
+    result.fresnel.f90[c] = std::min(1.0, fit.Fresnel(lobe, ChannelOf(fit, c), 0) / weight);
   }
   return result;
 }
@@ -212,8 +228,10 @@ SurfaceFresnel ConductorFresnelOf(const FittedBrdf& fit, std::size_t lobe, doubl
   const Material& material = fit.material();
   const bool own = fit.lobes()[lobe].choices.fresnel == Fresnel::kConductor && share == 1;
   const std::size_t first = FirstParameter(material.model, lobe) + kShapeParameters;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::size_t channel = material.channels.size() == 1 ? 0 : c;
+  fresnel.eta.resize(ChannelsOf(fit));
+  fresnel.k.resize(ChannelsOf(fit));
+  for (std::size_t c = 0; c < ChannelsOf(fit); ++c) {
+    const std::size_t channel = ChannelOf(fit, c);
     const ConductorIndex index =
         own ? ConductorIndex{material.parameters[first].values[channel], material.parameters[first + 1].values[channel]}
             : NearestConductor([&](double cos_d) { return fit.Fresnel(lobe, channel, cos_d) / share; });
@@ -234,24 +252,34 @@ std::size_t StrongestLobe(const FittedBrdf& fit) {
   return strongest;
 }
 
-Color3 DiffuseOf(const FittedBrdf& fit) {
-  Color3 diffuse = {};
-  for (std::size_t c = 0; c < 3; ++c) diffuse[c] = fit.diffuse()[fit.diffuse().size() == 1 ? 0 : c];
-  return diffuse;
-}
+Spectrum DiffuseOf(const FittedBrdf& fit) { return fit.IsGrey() ? Spectrum(3, fit.diffuse()[0]) : fit.diffuse(); }
 
 Shares SharesOf(const FittedBrdf& fit) {
   Shares shares;
-  const Color3 diffuse = DiffuseOf(fit);
+  const Spectrum diffuse = DiffuseOf(fit);
   shares.diffuse = fit.lobes().empty() ? 1.0 : std::clamp(*std::max_element(diffuse.begin(), diffuse.end()), 0.0, 0.99);
   double sum = 0;
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
     const SurfaceLobe lobe = LobeOf(fit, l, 1);
-    shares.lobes.push_back(std::max(1e-6, *std::max_element(lobe.fresnel.f0.begin(), lobe.fresnel.f0.end())));
+    const double largest = *std::max_element(lobe.fresnel.f0.begin(), lobe.fresnel.f0.end());
+    shares.lobes.push_back(largest < kNoReflectance ? 0.0 : largest);
     sum += shares.lobes.back();
+  }
+  if (sum == 0) {
+    shares.diffuse = 1;
+    return shares;
   }
   for (double& share : shares.lobes) share *= (1 - shares.diffuse) / sum;
   return shares;
+}
+
+double CommonRotation(const FittedBrdf& fit) {
+  double rotation = 0, largest = -1;
+  for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
+    const double f0 = fit.Fresnel(l, 0, 1);
+    if (fit.lobes()[l].anisotropic && f0 > largest) rotation = fit.lobes()[l].rotation, largest = f0;
+  }
+  return rotation;
 }
 
 }  // namespace lobefit

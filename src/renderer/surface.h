@@ -14,6 +14,9 @@
 namespace lobefit {
 
 using Color3 = std::array<double, 3>;  // linear R, G, B
+// One number a channel: R, G, B, or the wavelengths of a spectral material.
+using Spectrum = std::vector<double>;
+inline Spectrum ToSpectrum(const Color3& color) { return {color[0], color[1], color[2]}; }
 
 enum class SurfaceMasking {
   kHeightCorrelated,  // 1 / (1 + Lambda_i + Lambda_o), both widths (pbrt-v4, glTF)
@@ -24,8 +27,8 @@ enum class SurfaceMasking {
 struct SurfaceFresnel {
   enum class Kind { kSchlick, kConductor, kDielectric };
   Kind kind = Kind::kSchlick;
-  Color3 f0 = {0, 0, 0}, f90 = {1, 1, 1};  // kSchlick
-  Color3 eta = {1, 1, 1}, k = {0, 0, 0};   // kConductor; kDielectric takes eta[0]
+  Spectrum f0 = {0, 0, 0}, f90 = {1, 1, 1};  // kSchlick
+  Spectrum eta = {1, 1, 1}, k = {0, 0, 0};   // kConductor; kDielectric takes eta[0]
 
   double operator()(std::size_t channel, double cos_d) const;
 };
@@ -46,7 +49,7 @@ struct Surface {
   SurfaceMasking masking = SurfaceMasking::kHeightCorrelated;
   // Each lobe times 1 + F (1 - E) / E, with E the albedo of an isotropic lobe of the mean alpha (MaterialX' GLSL).
   bool energy_compensation = false;
-  Color3 diffuse = {0, 0, 0};  // albedo, any mixing weight included
+  Spectrum diffuse = {0, 0, 0};  // albedo, any mixing weight included; as long as every other Spectrum of the surface
   Vec3 diffuse_normal = {0, 0, 1};
   // What dims the diffuse part: nothing; the largest channel of Schlick's term of `layer` (glTF); the mean albedo of
   // lobes[layer_lobe] (OpenPBR in MaterialX).
@@ -56,7 +59,7 @@ struct Surface {
   std::size_t layer_lobe = 0;
 };
 
-// f_r in R, G, B.
+// f_r in the channels of the surface.
 BrdfFunction SurfaceBrdf(const Surface& surface);
 
 // Albedo of an isotropic, height-correlated GGX lobe whose Fresnel term is f0 + (f90 - f0) (1 - c)^5: f0 a(mu) + f90
@@ -76,8 +79,8 @@ ConductorIndex NearestConductor(const std::function<double(double)>& fresnel);
 // eta = 1 and the k of pbrt's `reflectance`: F(1) = r; r in [0, 0.9999].
 ConductorIndex ConductorOfReflectance(double r);
 
-// A lobe of the fit in the words of surfaces; Schlick's term with the fit's reflectance at normal incidence, times
-// 1 / weight.
+// A lobe of the fit in the words of surfaces, a grey channel three times; Schlick's term with the fit's reflectance at
+// normal incidence, times 1 / weight.
 SurfaceLobe LobeOf(const FittedBrdf& fit, std::size_t lobe, double weight);
 // The index whose Fresnel term is nearest to that of the fit's lobe over `share`, all channels; the fit's own where it
 // is a conductor's and the share is 1.
@@ -85,14 +88,18 @@ SurfaceFresnel ConductorFresnelOf(const FittedBrdf& fit, std::size_t lobe, doubl
 // The lobe with the largest reflectance.
 std::size_t StrongestLobe(const FittedBrdf& fit);
 // The diffuse albedo; grey three times.
-Color3 DiffuseOf(const FittedBrdf& fit);
+Spectrum DiffuseOf(const FittedBrdf& fit);
 
 // Shares of a random choice between the diffuse part and the lobes (pbrt's mix, Mitsuba's blendbsdf): the diffuse part
 // gets its largest albedo, the lobes share the rest by their reflectance. A share times a component is the component.
+// A lobe that reflects less than 1e-5 at normal incidence has the share 0: there is nothing to choose.
 struct Shares {
   double diffuse = 0;
   std::vector<double> lobes;
 };
 Shares SharesOf(const FittedBrdf& fit);
+
+// For renderers whose lobes all take the mesh's tangent: the rotation of the strongest lobe that has one.
+double CommonRotation(const FittedBrdf& fit);
 
 }  // namespace lobefit

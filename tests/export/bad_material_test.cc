@@ -37,7 +37,7 @@ TEST(BadMaterial, SaysWhatIsWrong) {
       {"Material \"conductor\" \"rgb reflectance\" [.5 .5]", "reflectance is not three numbers"},
       {"Material \"conductor\" \"rgb reflectance\" [.5 .5 .5", "this list has no end"},
       {"Material \"conductor\" \"float roughness\" x \"rgb reflectance\" [1 1 1]", "roughness 'x' is not a number"},
-      {"Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\"", "spectra are not understood"},
+      {"Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\"", "spectra by name are not known"},
       {"Material \"mix\" \"string materials\" [\"a\"]", "a mix needs two materials"},
       {"MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [\"m\" \"m\"]", "is not defined"},
       {"<scene version=\"3.0.0\"></scene>", "holds no <bsdf>"},

@@ -1,4 +1,6 @@
 // The table of targets: what is refused, what is said to be lost, and the better of two sets of numbers.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "tests/export/materials.h"
@@ -15,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string Fate(const char* target, const SyntheticCase& synthetic, const std::string& feature) {
+std::string Fate(const char* target, const SyntheticCase& synthetic, Feature feature) {
   const FittedBrdf fit(test::MaterialOf(synthetic));
   for (const Carried& row : FindTarget(target).carries(fit)) {
     if (row.feature == feature) {
@@ -26,24 +28,24 @@ std::string Fate(const char* target, const SyntheticCase& synthetic, const std::
 }
 
 TEST(Targets, SayWhatTheyCarry) {
-  EXPECT_EQ(Fate("glsl", test::Tilted(), "tilt"), "exactly");
-  EXPECT_EQ(Fate("gltf", test::Tilted(), "tilt"), "approximately");
-  EXPECT_EQ(Fate("gltf", test::Turned(), "rotation"), "exactly");
-  EXPECT_EQ(Fate("pbrt", test::Turned(), "rotation"), "approximately");
-  EXPECT_EQ(Fate("materialx", test::Turned(), "rotation"), "exactly");
-  EXPECT_EQ(Fate("gltf", test::Plastic(), "rotation"), "absent");
-  EXPECT_EQ(Fate("gltf", test::TwoLobes(), "second lobe"), "not");
-  EXPECT_EQ(Fate("materialx", test::TwoLobes(), "second lobe"), "exactly");
+  EXPECT_EQ(Fate("glsl", test::Tilted(), Feature::kTilt), "exactly");
+  EXPECT_EQ(Fate("gltf", test::Tilted(), Feature::kTilt), "approximately");
+  EXPECT_EQ(Fate("gltf", test::Turned(), Feature::kRotation), "exactly");
+  EXPECT_EQ(Fate("pbrt", test::Turned(), Feature::kRotation), "approximately");
+  EXPECT_EQ(Fate("materialx", test::Turned(), Feature::kRotation), "exactly");
+  EXPECT_EQ(Fate("gltf", test::Plastic(), Feature::kRotation), "absent");
+  EXPECT_EQ(Fate("gltf", test::TwoLobes(), Feature::kSecondLobe), "not");
+  EXPECT_EQ(Fate("materialx", test::TwoLobes(), Feature::kSecondLobe), "exactly");
   // The fits' masking is separable: Mitsuba's, and not pbrt's.
-  EXPECT_EQ(Fate("mitsuba", test::Turned(), "masking"), "exactly");
-  EXPECT_EQ(Fate("pbrt", test::Turned(), "masking"), "approximately");
-  EXPECT_EQ(Fate("merl", test::Plastic(), "shape"), "approximately");
+  EXPECT_EQ(Fate("mitsuba", test::Turned(), Feature::kMasking), "exactly");
+  EXPECT_EQ(Fate("pbrt", test::Turned(), Feature::kMasking), "approximately");
+  EXPECT_EQ(Fate("merl", test::Plastic(), Feature::kShape), "approximately");
 }
 
 TEST(Targets, OtherDistributionsAndFresnelTermsAreNotSilent) {
   SyntheticCase beckmann = test::Turned();
   beckmann.model.lobes[0].ndf = Ndf::kBeckmannAnisotropic;
-  EXPECT_EQ(Fate("gltf", beckmann, "shape"), "approximately");
+  EXPECT_EQ(Fate("gltf", beckmann, Feature::kShape), "approximately");
   EXPECT_EQ(FindTarget("glsl").refusal(FittedBrdf(test::MaterialOf(beckmann))), "");
   SyntheticCase sphere = test::Plastic();
   sphere.model.lobes[0].ndf = Ndf::kKagiwadaKalaba;
@@ -51,8 +53,8 @@ TEST(Targets, OtherDistributionsAndFresnelTermsAreNotSilent) {
   EXPECT_EQ(FindTarget("rgl").refusal(FittedBrdf(test::MaterialOf(beckmann))), "");
   SyntheticCase scale = test::Turned();
   scale.model.lobes[0].fresnel = Fresnel::kNone;
-  EXPECT_EQ(Fate("materialx", scale, "Fresnel"), "exactly");
-  EXPECT_EQ(Fate("gltf", scale, "Fresnel"), "approximately");
+  EXPECT_EQ(Fate("materialx", scale, Feature::kFresnel), "exactly");
+  EXPECT_EQ(Fate("gltf", scale, Feature::kFresnel), "approximately");
 }
 
 std::string Refusal(const SyntheticCase& synthetic, const char* target) {
@@ -72,11 +74,8 @@ std::string Refusal(const SyntheticCase& synthetic, const char* target) {
 
 TEST(Targets, RefuseWhatTheyCannotHold) {
   EXPECT_THAT(Refusal(test::Tilted(), "merl"), HasSubstr("sample.material.json: merl cannot hold this material"));
-  EXPECT_THAT(Refusal(test::Tilted(), "merl"), HasSubstr("tilted; targets that can: json, glsl"));
+  EXPECT_THAT(Refusal(test::Tilted(), "merl"), HasSubstr("tilted; targets that can: rgl, gltf"));
   EXPECT_THAT(Refusal(test::Turned(), "merl"), HasSubstr("anisotropic"));
-  SyntheticCase spectrum = OneLobe(Ndf::kGgx, 0.2, 0.2, 0, 0, 0, {0.5, 0.5, 0.5, 0.5}, {0, 0, 0, 0});
-  spectrum.channels = {"450nm", "500nm", "550nm", "600nm"};
-  EXPECT_THAT(Refusal(spectrum, "gltf"), HasSubstr("the fit has 4 channels (450nm, ...); fit with --channels rgb"));
 }
 
 TEST(Targets, UnknownNameGetsASuggestion) {
@@ -101,7 +100,7 @@ TEST(Refit, IsNearerWhereTheMaskingDiffers) {
   const std::optional<FittedBrdf> refitted = Refit(fit, target.own_model(fit), meter, 2);
   ASSERT_TRUE(refitted.has_value());
   const ExportError copied = meter.Compare(target.evaluate(fit)), fitted = meter.Compare(target.evaluate(*refitted));
-  EXPECT_TRUE(IsBetter(fitted, copied)) << fitted.median << " " << copied.median;
+  EXPECT_TRUE(IsBetter(fitted, copied)) << fitted.off.median << " " << copied.off.median;
   // Nothing to refit where the model is the target's own.
   EXPECT_FALSE(Refit(fit, fit.material().model, meter, 2).has_value());
 }
@@ -111,14 +110,55 @@ TEST(ErrorMeter, SaysWhatIsThere) {
   const FittedBrdf fit(test::MaterialOf(test::Tilted()));
   const ErrorMeter meter(fit);
   const ExportError same = meter.Compare(fit.function());
-  EXPECT_LT(same.maximum, 1e-12);
+  EXPECT_EQ(same.lobe.maximum, 0);
+  EXPECT_EQ(same.off.maximum, 0);
   EXPECT_EQ(same.albedo, 0);
+  EXPECT_GT(same.lobe.compared, 3 * 1000U);
+  EXPECT_EQ(same.uniform.compared, 3 * 6000U);
   const ExportError more = meter.Compare([f = fit.function()](const Vec3& wi, const Vec3& wo, double* values) {
     f(wi, wo, values);
     for (int c = 0; c < 3; ++c) values[c] *= 1.1;
   });
-  EXPECT_NEAR(more.median, 0.1, 1e-9);
+  for (const ErrorLevels* levels : {&more.uniform, &more.lobe, &more.off}) EXPECT_NEAR(levels->median, 0.1, 1e-9);
   EXPECT_NEAR(more.albedo, 0.1, 1e-9);
+}
+
+// A body colour that is halved under a mirror-like lobe: 50 % off the lobe, though it is a millionth of the peak.
+TEST(ErrorMeter, SeesTheBodyUnderANarrowPeak) {
+  const SyntheticCase narrow = OneLobe(Ndf::kGgx, 0.005, 0.005, 0, 0, 0, {0.5, 0.5, 0.5}, {0.01, 0.01, 0.01});
+  SyntheticCase darker = narrow;
+  darker.values.back() = {0.005, 0.005, 0.005};
+  const FittedBrdf fit(test::MaterialOf(narrow)), other(test::MaterialOf(darker));
+  const ExportError error = ErrorMeter(fit).Compare(other.function());
+  EXPECT_NEAR(error.uniform.median, 0.5, 0.01);
+  EXPECT_NEAR(error.off.median, 0.5, 0.01);
+  EXPECT_LT(error.lobe.median, 1e-3);
+  // The body is 0.01 of an albedo of 0.5 and more.
+  EXPECT_NEAR(error.albedo, 0.005 / 0.51, 1e-3);
+}
+
+// Beyond the angles that refitting looks at.
+TEST(ErrorMeter, LooksToGrazingDirections) {
+  const FittedBrdf fit(test::MaterialOf(test::Plastic()));
+  const ExportError error =
+      ErrorMeter(fit).Compare([f = fit.function()](const Vec3& wi, const Vec3& wo, double* values) {
+        f(wi, wo, values);
+        const bool grazing = std::min(wi.z, wo.z) < std::cos(DegreesToRadians(82));
+        for (int c = 0; c < 3; ++c) values[c] *= grazing ? 2 : 1;
+      });
+  EXPECT_EQ(error.off.median, 0);
+  EXPECT_GT(error.off.maximum, 0.99);
+  EXPECT_GT(error.albedo, 0.5);
+}
+
+// Two sets of numbers: one right but for the energy of a missing lobe, one with all of it and a little off.
+TEST(ErrorMeter, TheChoiceWeighsAlbedo) {
+  ExportError without, with;
+  without.lobe.median = 3e-4, without.lobe.percentile_90 = 7e-3, without.albedo = 0.26;
+  with.lobe.median = 5e-4, with.lobe.percentile_90 = 1e-2, with.albedo = 0.06;
+  EXPECT_TRUE(IsBetter(with, without));
+  EXPECT_FALSE(IsBetter(without, with));
+  EXPECT_FALSE(IsBetter(with, with));
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ class RglExport : public testing::Test {
     options.folder = folder_;
     options.name = "sample";
     options.threads = 2;
-    return ExportMaterial(test::MaterialOf(synthetic), options)[0];
+    return ExportMaterial(test::MaterialOf(synthetic), options).results[0];
   }
 
   // Values and albedos of the rgb file against the fit.

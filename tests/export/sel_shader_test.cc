@@ -82,7 +82,7 @@ class SelShaders : public testing::TestWithParam<Case> {
   // The text with f_of and bound_of as vec3, of the first two channels and the last.
   std::string Text() const {
     const std::size_t n = GetParam().channels.size();
-    std::string text = SelGlslText(reflectance_, GetParam().channels, {"a comment"});
+    std::string text = SelGlslText(reflectance_, GetParam().channels, "one", {"a comment"});
     for (const auto& [name, function, parameters, arguments] :
          {std::array<std::string, 4>{"f_of", "lobefit_f_r", "vec3 wi, vec3 wo", "wi, wo"},
           {"bound_of", BoundName(), "vec3 wi, vec3 axis, float angle", "wi, axis, angle"}}) {

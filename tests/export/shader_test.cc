@@ -13,7 +13,9 @@
 
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
-#include "lobefit/export/targets/shaders/write.h"
+#include "lobefit/export/targets/brdf_explorer/write.h"
+#include "lobefit/export/targets/glsl/write.h"
+#include "lobefit/export/targets/osl/write.h"
 
 namespace lobefit {
 namespace {
@@ -95,7 +97,7 @@ class Shaders : public testing::TestWithParam<Case> {
 
 TEST_P(Shaders, CompileForGlAndForWebGl) {
   if (!test::Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
-  const std::string text = GlslText(*fit_, {"a comment"}) + Main();
+  const std::string text = GlslText(*fit_, "a 2nd--one", {"a comment"}) + Main();
   const std::string main = "in vec3 a; in vec3 b; out vec4 c;\nvoid main() { c = vec4(f_of(a, b), 1.0); }\n";
   for (const char* version : {"#version 300 es\nprecision highp float;\n", "#version 330\n", "#version 410\n"}) {
     EXPECT_THAT(Validate(version + text + main), testing::Not(HasSubstr("ERROR"))) << version;
@@ -108,14 +110,14 @@ TEST_P(Shaders, BrdfExplorerFileCompiles) {
   if (!test::Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
   if (!fit_->IsRgbOrGrey()) return;
   const std::string file = BrdfExplorerText(*fit_, {"a comment"});
-  // As the program reads it: lines that begin with # go first, the first word is "analytic".
-  std::string kept, uniforms, shader;
+  // As the program reads it: the first line is "analytic", then lines that begin with # go.
+  EXPECT_TRUE(file.starts_with("analytic\n")) << file.substr(0, 20);
+  std::string uniforms, shader;
   LineReader lines(file);
   std::string_view line;
   bool in_parameters = false, in_shader = false;
   while (lines.Next(&line)) {
     if (Trim(line).starts_with("#")) continue;
-    kept += std::string(line) + "\n";
     if (line == "::end parameters") in_parameters = false;
     if (line == "::end shader") in_shader = false;
     if (in_parameters) {
@@ -128,7 +130,6 @@ TEST_P(Shaders, BrdfExplorerFileCompiles) {
     if (line == "::begin parameters") in_parameters = true;
     if (line == "::begin shader") in_shader = true;
   }
-  EXPECT_TRUE(kept.starts_with("analytic\n")) << kept.substr(0, 20);
   EXPECT_THAT(Validate("#version 410\n" + uniforms + shader +
                        "in vec3 a; in vec3 b; out vec4 c;\nvoid main() { c = vec4(BRDF(a, b, vec3(0.0, 0.0, 1.0), "
                        "vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0)), 1.0); }\n"),
@@ -172,7 +173,7 @@ TEST_P(Shaders, GiveTheFitsValuesInABrowser) {
         "vec3 f_of(vec3 wi, vec3 wo) { return BRDF(wi, wo, vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, "
         "0.0)); }\n";
   }
-  std::vector<std::string> texts = {GlslText(*fit_, {}) + Main() + kCall};
+  std::vector<std::string> texts = {GlslText(*fit_, "one", {}) + Main() + kCall};
   if (!explorer_body.empty()) texts.push_back(explorer_uniforms + explorer_body + kCall);
   const std::vector<std::vector<double>> rows = test::EvaluateInBrowser(texts, pairs, folder_);
   ASSERT_EQ(rows.size(), texts.size());
@@ -201,6 +202,22 @@ INSTANTIATE_TEST_SUITE_P(Materials, Shaders,
                                          Case{"beckmann_kelemen", BeckmannKelemen},
                                          Case{"schlick_smith", GgxSchlickSmith}, Case{"implicit", GgxImplicit}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
+
+// Two materials in one shader, and the first by the short name.
+TEST(GlslText, TwoFilesMakeOneShader) {
+  if (!test::Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
+  const FittedBrdf one(test::MaterialOf(test::Tilted())), two(test::MaterialOf(test::TwoLobes()));
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "two_files";
+  std::filesystem::create_directories(folder);
+  const std::string main =
+      "in vec3 a; in vec3 b; out vec4 c;\nvoid main() { c = vec4(lobefit_f_r(a, b) + lobefit_one_f_r(a, b) + "
+      "lobefit_m_2_two_f_r(a, b), 1.0); }\n";
+  const std::string text = GlslText(one, "one", {}) + GlslText(two, "2  two", {}) + main;
+  for (const char* version : {"#version 300 es\nprecision highp float;\n", "#version 330\n"}) {
+    EXPECT_THAT(test::Validate(version + text, folder), testing::Not(HasSubstr("ERROR"))) << version;
+  }
+  std::filesystem::remove_all(folder);
+}
 
 TEST(OslText, IsTheSameTextWithItsOwnNames) {
   const FittedBrdf fit(test::MaterialOf(test::Tilted()));

@@ -123,8 +123,9 @@ class TargetModel : public testing::Test {
 
 TEST_F(TargetModel, Pbrt) {
   const std::string text = Export(test::Tilted(), "pbrt", "sample.pbrt");
-  const std::vector<double> r = Find(text, "\"rgb reflectance\" \\[([^\\]]*)\\]");
-  const std::vector<double> rho = Find(text, "\"rgb reflectance\" \\[([^\\]]*)\\]", 1);
+  const std::vector<double> eta = Find(text, "\"rgb eta\" \\[([^\\]]*)\\]"),
+                            k = Find(text, "\"rgb k\" \\[([^\\]]*)\\]");
+  const std::vector<double> rho = Find(text, "\"rgb reflectance\" \\[([^\\]]*)\\]");
   const double ax = Find(text, "\"float uroughness\" (\\S+)")[0], ay = Find(text, "\"float vroughness\" (\\S+)")[0];
   const double amount = Find(text, "\"float amount\" (\\S+)")[0];
   EXPECT_NE(text.find("\"bool remaproughness\" false"), std::string::npos);
@@ -137,9 +138,8 @@ TEST_F(TargetModel, Pbrt) {
         const double c = Dot(wi, Normalized(wi + wo));
         const double lobe = LobeFactor(TurnedFrame(turn, n), ax, ay, wi, wo, "correlated");
         Rgb3 f = {};
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double index_k = 2 * std::sqrt(r[k]) / std::sqrt(1 - r[k]);
-          f[k] = (1 - amount) * lobe * ComplexFresnel(1, index_k, c) + amount * rho[k] / kPi;
+        for (std::size_t j = 0; j < 3; ++j) {
+          f[j] = (1 - amount) * lobe * ComplexFresnel(eta[j], k[j], c) + amount * rho[j] / kPi;
         }
         return f;
       },

@@ -56,7 +56,7 @@ TEST_F(ExportVerb, BadUse) {
       {"", 2, "--to TARGET[,TARGET] are needed"},
       {"brushed_metal.material.json", 2, "lobefit export --list"},
       {"brushed_metal.material.json --to mitsubah", 2, "did you mean 'mitsuba'?"},
-      {"brushed_metal.material.json --to merl,gltf", 3, "merl cannot hold this material"},
+      {"brushed_metal.material.json --to merl", 3, "merl cannot hold this material"},
       {"nothing.material.json --to gltf", 3, "nothing.material.json"},
       {"broken.json --to gltf", 3, "broken.json"},
       {"brushed_metal.material.json --to gltf --copy --refit", 2, "excludes"},
@@ -73,6 +73,67 @@ TEST_F(ExportVerb, BadUse) {
       << "nothing is left behind";
 }
 
+// One target that refuses does not stop the others; the exit code says that not all was written.
+TEST_F(ExportVerb, RefusalsDoNotStopTheOthers) {
+  const ProgramResult run = Shell("lobefit export brushed_metal.material.json --to pbrt,merl,gltf --out here");
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_THAT(run.err, HasSubstr("merl cannot hold this material: its table has no azimuth"));
+  EXPECT_THAT(run.err, HasSubstr("the other targets are written"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "here/brushed_metal.pbrt"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "here/brushed_metal.gltf"));
+  const nlohmann::json record = nlohmann::json::parse(ReadWholeFile(folder_ / "here/brushed_metal.export.json"));
+  EXPECT_EQ(record["refused"][0]["target"], "merl");
+}
+
+// What is said of the numbers: asked only where asked, exactly only of what was not refitted.
+TEST_F(ExportVerb, SaysHowTheNumbersCame) {
+  const ProgramResult chosen = Shell("lobefit export brushed_metal.material.json --to pbrt --name chosen");
+  EXPECT_THAT(chosen.out, testing::Not(HasSubstr("as asked")));
+  EXPECT_THAT(chosen.out, HasSubstr("which is nearer"));
+  EXPECT_THAT(Shell("lobefit export brushed_metal.material.json --to pbrt --copy --name copy").out,
+              HasSubstr("numbers copied, as asked"));
+  const ProgramResult refit = Shell("lobefit export brushed_metal.material.json --to gltf --refit --name refit");
+  EXPECT_THAT(refit.out, HasSubstr("numbers refitted, "));
+  EXPECT_THAT(refit.out, testing::Not(HasSubstr("exactly: shape")));
+  EXPECT_THAT(refit.out, HasSubstr("(refitted)"));
+}
+
+// Names of the material where they stand, and the place of a normal map where a renderer looks for it.
+TEST_F(ExportVerb, LoadLinesAndMapPath) {
+  const ProgramResult run =
+      Shell("lobefit export brushed_metal.material.json --to mitsuba,pbrt,glsl --name blue-acrylic --map-path maps");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("<include filename=\"blue-acrylic.mitsuba.xml\"/>, then <ref id=\"blue_acrylic\"/>"));
+  EXPECT_THAT(run.out, HasSubstr("lobefit_blue_acrylic_f_r(wi, wo)"));
+  const std::string xml = ReadWholeFile(folder_ / "blue-acrylic.mitsuba.xml");
+  EXPECT_THAT(xml, HasSubstr("id=\"blue_acrylic\""));
+  EXPECT_THAT(xml, HasSubstr("value=\"maps/blue-acrylic_normal1.png\""));
+  EXPECT_THAT(xml, HasSubstr("needs Mitsuba 3.7.1"));
+  EXPECT_THAT(xml, HasSubstr("spectral ones clamp eta and k to 1"));
+  EXPECT_THAT(ReadWholeFile(folder_ / "blue-acrylic.mitsuba.py"), HasSubstr("version >= (3, 7, 1)"));
+  EXPECT_THAT(ReadWholeFile(folder_ / "blue-acrylic.pbrt"), HasSubstr("\"maps/blue-acrylic_normal1.png\""));
+}
+
+// A lobe that pbrt would make a mirror of, and a material that gains light.
+TEST_F(ExportVerb, NarrowLobesAndCreatedEnergyAreNamed) {
+  ASSERT_EQ(Shell("cat > narrow.py <<'END'\n"
+                  "import json\n"
+                  "d = json.load(open('brushed_metal.material.json'))\n"
+                  "p = d['parameters']\n"
+                  "p['alpha_x']['value'], p['alpha_y']['value'] = 0.0008, 0.0005\n"
+                  "p['theta_x_deg']['value'] = p['theta_y_deg']['value'] = 0\n"
+                  "p['diffuse']['value'] = [0.9, 0.9, 0.9]\n"
+                  "json.dump(d, open('narrow.material.json', 'w'))\nEND\npython3 narrow.py")
+                .exit_code,
+            0);
+  const ProgramResult run = Shell("lobefit export narrow.material.json --to pbrt --copy");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("approximately: shape (a lobe is narrower than 0.001"));
+  EXPECT_THAT(ReadWholeFile(folder_ / "narrow.pbrt"),
+              HasSubstr("\"float uroughness\" 0.001 \"float vroughness\" 0.0005"));
+  EXPECT_THAT(run.out, HasSubstr("reflects more than it receives: an albedo of 1."));
+}
+
 // A table of lobes in place of a model: the document and shader text hold it, all others refuse it.
 TEST_F(ExportVerb, TablesOfLobes) {
   ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe sel --no-report").exit_code, 0);
@@ -86,7 +147,7 @@ TEST_F(ExportVerb, TablesOfLobes) {
   EXPECT_GT(record["targets"][1]["relative_error"]["maximum"], 0) << "single precision";
   const std::string glsl = ReadWholeFile(folder_ / "here/satin_plastic.glsl");
   EXPECT_THAT(glsl, testing::StartsWith("// satin_plastic: exported by lobefit"));
-  EXPECT_THAT(glsl, HasSubstr("vec3 lobefit_f_r_bound(vec3 wi, vec3 axis, float half_angle)"));
+  EXPECT_THAT(glsl, HasSubstr("vec3 lobefit_satin_plastic_f_r_bound(vec3 wi, vec3 axis, float half_angle)"));
   for (const char* target :
        {"osl", "brdf-explorer", "pbrt", "mitsuba", "materialx", "openpbr", "gltf", "rgl", "merl", "bsdf-xml", "csv"}) {
     const ProgramResult refused =

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lobefit/core/brdf/ggx_lobe.h"
 #include "lobefit/math/directions.h"
-#include "lobefit/measurement/interpolation.h"
 #include "lobefit/synthesis/synthesis.h"
 
 namespace lobefit {
@@ -20,13 +20,77 @@ Vec3 NormalAt(const SlopeCoordinates& shape, double level, double psi) {
   return Normalized(Vec3{-slope_x, -slope_y, 1});
 }
 
+// Whether the normal is among those nearest to the lobe's centre that hold `level` of its slopes.
+bool IsWithin(const SlopeCoordinates& shape, double level, const Vec3& wh) {
+  const double y1 = (-wh.x / wh.z - shape.v[0]) / std::exp(shape.v[2]);
+  const double y2 = (-wh.y / wh.z - shape.v[1] - shape.v[3] * y1) / std::exp(shape.v[4]);
+  return y1 * y1 + y2 * y2 <= level / (1 - level);
+}
+
+constexpr double kLobeLevel = 0.9;
+const double kLeastCos = std::cos(DegreesToRadians(88));
+
+// Point k of an additive recurrence in four dimensions, which fills the cube evenly: the fractions of k times the
+// powers of the root of x^5 = x + 1.
+std::array<double, 4> CubePoint(std::size_t k) {
+  constexpr double kRoot = 1.1673039782614187;
+  std::array<double, 4> point = {};
+  double factor = 1;
+  for (double& x : point) {
+    factor /= kRoot;
+    x = 0.5 + static_cast<double>(k) * factor;
+    x -= std::floor(x);
+  }
+  return point;
+}
+
+// Uniform over the solid angle to 88 degrees.
+Vec3 UniformDirection(double u, double v) { return FromSpherical(std::acos(1 - u * (1 - kLeastCos)), 2 * kPi * v); }
+
+ErrorLevels LevelsOf(std::vector<double> differences) {
+  ErrorLevels levels;
+  levels.compared = differences.size();
+  if (differences.empty()) return levels;
+  std::sort(differences.begin(), differences.end());
+  levels.median = differences[differences.size() / 2];
+  levels.percentile_90 = differences[differences.size() * 9 / 10];
+  levels.maximum = differences.back();
+  return levels;
+}
+
+double Score(const ExportError& error) {
+  const auto capped = [](double part) { return std::min(part, 1.0); };
+  const auto mean = [&](const ErrorLevels& levels) {
+    return (capped(levels.median) + capped(levels.percentile_90)) / 2;
+  };
+  return mean(error.lobe) + mean(error.off) + 2 * capped(error.albedo);
+}
+
 }  // namespace
+
+bool IsBetter(const ExportError& a, const ExportError& b) { return Score(a) < Score(b); }
 
 ErrorMeter::ErrorMeter(const FittedBrdf& fit)
     : ErrorMeter(fit.function(), fit.channels(), fit.reflectance().lobe_shapes(), fit.material().source.file) {}
 
 ErrorMeter::ErrorMeter(const BrdfFunction& brdf, const Channels& channels, const std::vector<SlopeCoordinates>& shapes,
-                       const std::string& source) {
+                       const std::string& source)
+    : channels_(channels.size()) {
+  MakeMeasurement(brdf, channels, shapes);
+  measurement_.source = source;
+  MakeProbes(brdf, shapes);
+  MakeAlbedoRules(shapes);
+  for (const AlbedoRule& rule : rules_) {
+    fitted_albedo_.push_back(Albedo(rule, brdf));
+    for (std::size_t c = 0; c < channels_; ++c) {
+      if (fitted_albedo_.back()[c] <= largest_albedo_.albedo) continue;
+      largest_albedo_ = {fitted_albedo_.back()[c], RadiansToDegrees(PolarAngle(rule.wo)), channels.names[c]};
+    }
+  }
+}
+
+void ErrorMeter::MakeMeasurement(const BrdfFunction& brdf, const Channels& channels,
+                                 const std::vector<SlopeCoordinates>& shapes) {
   GoniometerLayout layout;
   for (const double degrees : {5, 20, 35, 50, 65, 75}) layout.polar_angles.push_back(DegreesToRadians(degrees));
   for (int k = 0; k < 8; ++k) layout.azimuths.push_back(DegreesToRadians(45 * k));
@@ -47,16 +111,34 @@ ErrorMeter::ErrorMeter(const BrdfFunction& brdf, const Channels& channels, const
     }
   }
   measurement_ = Synthesise(directions, channels, brdf, {}, 0);
-  measurement_.source = source;
-  MakeAlbedoRules(shapes);
-  for (const AlbedoRule& rule : rules_) fitted_albedo_.push_back(Albedo(rule, brdf));
+}
+
+void ErrorMeter::MakeProbes(const BrdfFunction& brdf, const std::vector<SlopeCoordinates>& shapes) {
+  constexpr std::size_t kUniform = 6000, kALobe = 2000;
+  for (std::size_t k = 0; k < kUniform; ++k) {
+    const std::array<double, 4> u = CubePoint(k);
+    Probe probe = {UniformDirection(u[0], u[1]), UniformDirection(u[2], u[3]), true, false};
+    const Vec3 wh = HalfVector(probe.wi, probe.wo);
+    for (const SlopeCoordinates& shape : shapes) probe.in_lobe = probe.in_lobe || IsWithin(shape, kLobeLevel, wh);
+    probes_.push_back(probe);
+  }
+  for (const SlopeCoordinates& shape : shapes) {
+    for (std::size_t k = 0; k < kALobe; ++k) {
+      const std::array<double, 4> u = CubePoint(k);
+      const Vec3 wi = UniformDirection(u[0], u[1]), wm = NormalAt(shape, kLobeLevel * u[2], 2 * kPi * u[3]);
+      const Vec3 wo = Reflect(wi, wm);
+      if (Dot(wi, wm) > 0 && wo.z >= kLeastCos) probes_.push_back({wi, wo, false, true});
+    }
+  }
+  fitted_.resize(probes_.size() * channels_);
+  for (std::size_t k = 0; k < probes_.size(); ++k) brdf(probes_[k].wi, probes_[k].wo, &fitted_[k * channels_]);
 }
 
 // Directions by the slopes of each lobe and by the cosine, weighted by the balance heuristic: the same nodes serve
 // narrow and wide lobes, and what they miss, they miss of both functions.
 void ErrorMeter::MakeAlbedoRules(const std::vector<SlopeCoordinates>& shapes) {
   constexpr int kSide = 24;
-  for (const double theta : {0.0, 30.0, 60.0, 75.0}) {
+  for (const double theta : {0.0, 30.0, 60.0, 75.0, 88.0}) {
     for (const double phi : {20.0, 110.0, 200.0, 290.0}) {
       AlbedoRule rule;
       rule.wo = FromSpherical(DegreesToRadians(theta), DegreesToRadians(phi));
@@ -81,24 +163,31 @@ void ErrorMeter::MakeAlbedoRules(const std::vector<SlopeCoordinates>& shapes) {
 }
 
 std::vector<double> ErrorMeter::Albedo(const AlbedoRule& rule, const BrdfFunction& brdf) const {
-  const std::size_t channels = measurement_.channels.size();
-  std::vector<double> albedo(channels), values(channels);
+  std::vector<double> albedo(channels_), values(channels_);
   for (std::size_t i = 0; i < rule.wi.size(); ++i) {
     brdf(rule.wi[i], rule.wo, values.data());
-    for (std::size_t c = 0; c < channels; ++c) albedo[c] += rule.weight[i] * values[c];
+    for (std::size_t c = 0; c < channels_; ++c) albedo[c] += rule.weight[i] * values[c];
   }
   return albedo;
 }
 
 ExportError ErrorMeter::Compare(const BrdfFunction& brdf) const {
-  const Difference difference = CompareWith(measurement_, brdf);
-  ExportError error = {difference.median, difference.percentile_90, difference.maximum, 0, difference.compared};
+  std::vector<double> uniform, lobe, off, values(channels_);
+  for (std::size_t k = 0; k < probes_.size(); ++k) {
+    brdf(probes_[k].wi, probes_[k].wo, values.data());
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const double fitted = fitted_[k * channels_ + c];
+      const double error = std::fabs(values[c] - fitted) / std::max(std::fabs(fitted), kErrorFloor);
+      if (probes_[k].uniform) uniform.push_back(error);
+      (probes_[k].in_lobe ? lobe : off).push_back(error);
+    }
+  }
+  ExportError error = {LevelsOf(std::move(uniform)), LevelsOf(std::move(lobe)), LevelsOf(std::move(off)), 0};
   for (std::size_t k = 0; k < rules_.size(); ++k) {
     const std::vector<double> albedo = Albedo(rules_[k], brdf);
     for (std::size_t c = 0; c < albedo.size(); ++c) {
-      if (fitted_albedo_[k][c] > 0) {
-        error.albedo = std::max(error.albedo, std::fabs(albedo[c] / fitted_albedo_[k][c] - 1));
-      }
+      const double fitted = fitted_albedo_[k][c];
+      error.albedo = std::max(error.albedo, std::fabs(albedo[c] - fitted) / std::max(fitted, kPi * kErrorFloor));
     }
   }
   return error;

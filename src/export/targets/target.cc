@@ -4,8 +4,36 @@
 
 namespace lobefit {
 
+const char* NameOf(Feature feature) {
+  switch (feature) {
+    case Feature::kShape:
+      return "shape";
+    case Feature::kRotation:
+      return "rotation";
+    case Feature::kTilt:
+      return "tilt";
+    case Feature::kMasking:
+      return "masking";
+    case Feature::kFresnel:
+      return "Fresnel";
+    case Feature::kDiffuse:
+      return "diffuse";
+    case Feature::kSecondLobe:
+      return "second lobe";
+    case Feature::kChannels:
+      return "channels";
+    case Feature::kLobes:
+      return "lobes";
+    case Feature::kInterpolation:
+      return "interpolation";
+    case Feature::kBound:
+      break;
+  }
+  return "upper bound of the samples";
+}
+
 BrdfFunction InChannelsOf(const FittedBrdf& fit, const BrdfFunction& rgb) {
-  if (fit.material().channels.size() >= 3) return rgb;
+  if (!fit.IsGrey()) return rgb;
   return [rgb](const Vec3& wi, const Vec3& wo, double* values) {
     std::array<double, 3> all = {};
     rgb(wi, wo, all.data());

@@ -1,23 +1,38 @@
-// The targets of an export: what each can hold of a fit, and how it is written.
+// The targets of an export: what each can hold of a fit, how it is written, and how its files are read.
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "lobefit/export/targets/imported_material.h"
+#include "lobefit/io/text/format.h"
 #include "lobefit/measurement/brdf_function.h"
 #include "lobefit/renderer/fitted_brdf.h"
 
 namespace lobefit {
 
-// How a target carries a feature of the fit.
+// What a fit consists of; the last three of a table of lobes.
+enum class Feature {
+  kShape,
+  kRotation,
+  kTilt,
+  kMasking,
+  kFresnel,
+  kDiffuse,
+  kSecondLobe,
+  kChannels,
+  kLobes,
+  kInterpolation,
+  kBound,
+};
+const char* NameOf(Feature feature);
+
+// How a target carries a feature: kExactly is said only of numbers that are carried unchanged.
 enum class Carries { kExactly, kApproximately, kNot };
 struct Carried {
-  std::string feature;
+  Feature feature = Feature::kShape;
   Carries how = Carries::kExactly;
   std::string note;  // in which form, or what becomes of it
 };
@@ -27,9 +42,7 @@ struct WriteContext {
   std::filesystem::path folder;
   std::string name;                 // of the material; files are NAME and an ending
   std::vector<std::string> header;  // lines of the comment at the top of text files
-  int threads = 1;
-  // Reads a written file back as its renderer evaluates it.
-  std::function<ImportedMaterial(const std::filesystem::path&)> read_back;
+  std::string map_path;             // folder before the name of a normal map, as the renderer is to look for it
 
   std::filesystem::path File(std::string_view ending) const { return folder / (name + std::string(ending)); }
 };
@@ -42,23 +55,31 @@ struct WrittenFiles {
   std::vector<std::string> notes;  // for people: what to do beside loading the file
 };
 
+// One row of the table of targets. Members that are null are what a target does not do.
 struct Target {
-  const char* name;
-  const char* description;
-  const char* load;  // one line: how to load it
-  // Why the target cannot hold this fit at all; empty where it can.
-  std::string (*refusal)(const FittedBrdf& fit);
-  std::vector<Carried> (*carries)(const FittedBrdf& fit);
+  const char* name = "";
+  const char* description = "";
+  // One line: how to load it. {name} is the name of the material and of its files, {id} the name as an identifier,
+  // {glsl} what names in GLSL begin with.
+  const char* load = "";
+  bool rgb_only = false;  // holds R, G, B or one grey channel: other channels are converted for it
+  // Why the target cannot hold this fit at all; "" where it can. Null: it holds every fit.
+  std::string (*refusal)(const FittedBrdf& fit) = nullptr;
+  std::vector<Carried> (*carries)(const FittedBrdf& fit) = nullptr;
   // The model nearest to the target's own among those that can be fitted; null: numbers are never refitted.
-  Model (*own_model)(const FittedBrdf& fit);
+  Model (*own_model)(const FittedBrdf& fit) = nullptr;
   // The target's own model with the numbers of `fit` translated: f_r in the fit's channels. Null where `write` has it.
-  BrdfFunction (*evaluate)(const FittedBrdf& fit);
-  WrittenFiles (*write)(const FittedBrdf& fit, const WriteContext& context);
+  BrdfFunction (*evaluate)(const FittedBrdf& fit) = nullptr;
+  WrittenFiles (*write)(const FittedBrdf& fit, const WriteContext& context) = nullptr;
   // A table of squared ellipsoidal lobes in place of a model; null: the target cannot hold one.
   WrittenFiles (*write_sel)(const Material& material, const WriteContext& context) = nullptr;
+  // Whether the bytes look like a file of this target, and the reader, which throws InputError with the place of what
+  // is not understood: an input that the reader does not evaluate is an error or stands in the remarks.
+  bool (*recognises)(std::string_view bytes) = nullptr;
+  ImportedMaterial (*read)(const InputFile& file) = nullptr;
 };
 
-// A function of R, G, B as one of the fit's channels: itself, or its first channel where the fit has one.
+// A function of R, G, B as one of the fit's channels: itself, or its first channel where the fit is grey.
 BrdfFunction InChannelsOf(const FittedBrdf& fit, const BrdfFunction& rgb);
 
 }  // namespace lobefit

@@ -21,8 +21,13 @@ std::string FloatLiteral(double value) {
   return text;
 }
 
+std::string Numbers9(const std::vector<double>& values, std::string_view separator) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : std::string(separator)) + Number9(value);
+  return text;
+}
 std::string Numbers9(const Color3& values, std::string_view separator) {
-  return fmt::format("{:.9g}{}{:.9g}{}{:.9g}", values[0], separator, values[1], separator, values[2]);
+  return Numbers9(ToSpectrum(values), separator);
 }
 
 std::string CommentLines(const std::vector<std::string>& lines, std::string_view mark) {
@@ -51,13 +56,30 @@ double RotationOfComment(std::string_view text) {
   return DegreesToRadians(ParseDouble(rest.substr(0, rest.find('\n'))).value_or(0));
 }
 
-double CommonRotation(const FittedBrdf& fit) {
-  double rotation = 0, largest = -1;
-  for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
-    const double f0 = fit.Fresnel(l, 0, 1);
-    if (fit.lobes()[l].anisotropic && f0 > largest) rotation = fit.lobes()[l].rotation, largest = f0;
+std::string MapComment(const std::vector<std::string>& maps, std::string_view beside) {
+  return fmt::format(
+      "The renderer looks for the normal map {} beside {}; --map-path of the export writes another place.", Join(maps),
+      beside);
+}
+
+std::filesystem::path FindMap(const std::filesystem::path& file, const std::string& name) {
+  const std::filesystem::path whole = file.parent_path() / name;
+  return std::filesystem::exists(whole) ? whole : file.parent_path() / std::filesystem::path(name).filename();
+}
+
+std::string GlslPrefix(const std::string& name) {
+  // Two underscores in a row are reserved.
+  std::string prefix = "lobefit_";
+  for (const char c : Identifier(name) + "_") {
+    if (c != '_' || prefix.back() != '_') prefix += c;
   }
-  return rotation;
+  return prefix;
+}
+
+std::string GlslShortName(const std::string& name, const std::string& own) {
+  std::string guard = "LOBEFIT_";
+  for (const char c : name) guard += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return fmt::format("#ifndef {0}\n#define {0}\n#define lobefit_{1} {2}\n#endif\n", guard, name, own);
 }
 
 std::string Identifier(const std::string& name) {

@@ -1,6 +1,7 @@
 // Pieces of text that the exporters share.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,7 +15,8 @@ namespace lobefit {
 std::string Number9(double value);
 // The same as a literal of type float in shader text.
 std::string FloatLiteral(double value);
-// Three of them with blanks between.
+// Several with blanks between.
+std::string Numbers9(const std::vector<double>& values, std::string_view separator = " ");
 std::string Numbers9(const Color3& values, std::string_view separator = " ");
 
 // Comment lines, each behind `mark`; or as one XML comment, in which two hyphens are set apart.
@@ -26,8 +28,17 @@ std::string XmlComment(const std::vector<std::string>& lines);
 std::vector<std::string> RotationComment(double rotation);
 double RotationOfComment(std::string_view text);
 
-// For pbrt and Mitsuba, whose lobes all take the mesh's tangent: the rotation of the strongest lobe that has one.
-double CommonRotation(const FittedBrdf& fit);
+// A line for the header of a file that names normal maps.
+std::string MapComment(const std::vector<std::string>& maps, std::string_view beside);
+
+// The file of a map that a material file names: in that file's folder by the whole name or, where a renderer looks
+// elsewhere, by its last part.
+std::filesystem::path FindMap(const std::filesystem::path& file, const std::string& name);
+
+// Names in GLSL of one material, so that several files make one shader: "lobefit_NAME_"; and the macro by which the
+// first file of a shader is called without NAME: lobefit_`name` for `own`.
+std::string GlslPrefix(const std::string& name);
+std::string GlslShortName(const std::string& name, const std::string& own);
 
 // A name that formats and programs take: letters, digits, underscores.
 std::string Identifier(const std::string& name);

@@ -1,10 +1,16 @@
+#include "lobefit/export/targets/gltf/read.h"
+
+#include <algorithm>
+#include <map>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/base64.h"
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
-#include "lobefit/export/targets/gltf/write.h"
+#include "lobefit/base/text.h"
+#include "lobefit/renderer/gltf_material.h"
 #include "lobefit/renderer/normal_map.h"
 
 namespace lobefit {
@@ -12,42 +18,95 @@ namespace {
 
 using Json = nlohmann::json;
 
+// What each object of a material may hold.
+const std::map<std::string, std::vector<std::string>>& KnownMembers() {
+  static const std::map<std::string, std::vector<std::string>> known = {
+      {"the extensions", {"KHR_materials_anisotropy", "KHR_materials_ior", "KHR_materials_specular"}},
+      {"the material",
+       {"name", "pbrMetallicRoughness", "normalTexture", "extensions", "alphaMode", "alphaCutoff", "doubleSided",
+        "emissiveFactor"}},
+      {"pbrMetallicRoughness", {"baseColorFactor", "metallicFactor", "roughnessFactor"}},
+      {"KHR_materials_anisotropy", {"anisotropyStrength", "anisotropyRotation"}},
+      {"KHR_materials_ior", {"ior"}},
+      {"KHR_materials_specular", {"specularFactor", "specularColorFactor"}},
+      {"normalTexture", {"index", "scale", "texCoord"}}};
+  return known;
+}
+
 class GltfReader {
  public:
-  GltfReader(std::string_view bytes, const std::filesystem::path& path) : path_(path) {
-    json_ = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  explicit GltfReader(const InputFile& file) : path_(file.path) {
+    json_ = Json::parse(file.bytes.begin(), file.bytes.end(), nullptr, false);
     if (!json_.is_object()) Fail("is not JSON");
-  }
-
-  GltfMaterial Read() const {
     if (!json_.contains("materials") || !json_["materials"].is_array() || json_["materials"].empty()) {
       Fail("holds no materials");
     }
+    if (!json_["materials"][0].is_object()) Fail("the first material is not an object");
+  }
+
+  GltfMaterial Read() const {
     const Json& entry = json_["materials"][0];
     const Json none = Json::object();
     const Json& pbr = Object(entry, "pbrMetallicRoughness", none);
-    if (pbr.contains("baseColorTexture") || pbr.contains("metallicRoughnessTexture")) {
-      Fail("the material has textures; only constant materials are understood");
-    }
+    const Json& extensions = Object(entry, "extensions", none);
+    const Json& anisotropy = Object(extensions, "KHR_materials_anisotropy", none);
+    const Json& ior = Object(extensions, "KHR_materials_ior", none);
+    const Json& specular = Object(extensions, "KHR_materials_specular", none);
+    // Without pbrMetallicRoughness the defaults hold, but then an extension stands in its place.
+    CheckMembers(extensions, "the extensions");
+    CheckMembers(entry, "the material");
+    CheckMembers(pbr, "pbrMetallicRoughness");
+    CheckMembers(anisotropy, "KHR_materials_anisotropy");
+    CheckMembers(ior, "KHR_materials_ior");
+    CheckMembers(specular, "KHR_materials_specular");
+    if (entry.contains("alphaMode") && entry["alphaMode"] != "OPAQUE") Fail("the material is not opaque (alphaMode)");
+    if (Color(entry, "emissiveFactor", 3, {0, 0, 0}) != Color3{0, 0, 0}) Fail("the material emits light");
+
     GltfMaterial material;
     material.base_color = Color(pbr, "baseColorFactor", 4, {1, 1, 1});
     material.metallic = Real(pbr, "metallicFactor", 1);
     material.roughness.roughness = Real(pbr, "roughnessFactor", 1);
-    const Json& extensions = Object(entry, "extensions", none);
-    const Json& anisotropy = Object(extensions, "KHR_materials_anisotropy", none);
     material.roughness.anisotropy = Real(anisotropy, "anisotropyStrength", 0);
     material.rotation = Real(anisotropy, "anisotropyRotation", 0);
-    material.ior = Real(Object(extensions, "KHR_materials_ior", none), "ior", 1.5);
-    const Json& specular = Object(extensions, "KHR_materials_specular", none);
+    material.ior = Real(ior, "ior", 1.5);
     material.specular = Real(specular, "specularFactor", 1);
     material.specular_color = Color(specular, "specularColorFactor", 3, {1, 1, 1});
     if (entry.contains("normalTexture")) material.normal = NormalOf(Object(entry, "normalTexture", none));
     return material;
   }
 
+  // The materials that are not looked at.
+  std::vector<std::string> Remarks() const {
+    std::vector<std::string> remarks;
+    for (std::size_t k = 1; k < json_["materials"].size(); ++k) {
+      remarks.push_back(
+          fmt::format("the material {} ('{}') is left out: the first one, '{}', is taken", k, NameOf(k), NameOf(0)));
+    }
+    return remarks;
+  }
+
  private:
   [[noreturn]] void Fail(const std::string& message) const {
     throw InputError(fmt::format("{}: {}", path_.string(), message));
+  }
+
+  std::string NameOf(std::size_t material) const {
+    const Json& entry = json_["materials"][material];
+    if (!entry.is_object() || !entry.contains("name") || !entry["name"].is_string()) return "";
+    return Excerpt(entry["name"].get<std::string>());
+  }
+
+  // Members that are not evaluated are errors; extras are notes.
+  void CheckMembers(const Json& object, const char* of) const {
+    const std::vector<std::string>& known = KnownMembers().at(of);
+    for (const auto& [name, value] : object.items()) {
+      if (name == "extras" || std::find(known.begin(), known.end(), name) != known.end()) continue;
+      if (name.ends_with("Texture")) {
+        Fail(fmt::format("{} has textures ('{}'); only constant materials are understood", of, Excerpt(name)));
+      }
+      Fail(fmt::format("the member '{}' of {} is not understood{}; allowed are {}", Excerpt(name), of,
+                       DidYouMean(name, known), Join(known)));
+    }
   }
 
   const Json& Object(const Json& parent, const char* name, const Json& none) const {
@@ -85,6 +144,7 @@ class GltfReader {
   }
 
   Vec3 NormalOf(const Json& texture) const {
+    CheckMembers(texture, "normalTexture");
     const Json missing;
     const Json& entry = Item("textures", texture.contains("index") ? texture["index"] : missing);
     const Json& image = Item("images", entry.contains("source") ? entry["source"] : missing);
@@ -107,8 +167,14 @@ class GltfReader {
 
 }  // namespace
 
-GltfMaterial ReadGltf(std::string_view bytes, const std::filesystem::path& path) {
-  return GltfReader(bytes, path).Read();
+bool IsGltf(std::string_view bytes) {
+  const Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  return json.is_object() && (json.contains("asset") || json.contains("materials"));
+}
+
+ImportedMaterial ReadGltf(const InputFile& file) {
+  const GltfReader reader(file);
+  return {"gltf", {{"R", "G", "B"}, {}}, SurfaceBrdf(GltfSurface(reader.Read())), reader.Remarks()};
 }
 
 }  // namespace lobefit

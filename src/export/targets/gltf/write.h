@@ -1,33 +1,11 @@
 // glTF 2.0: metallic-roughness with KHR_materials_anisotropy, KHR_materials_ior and KHR_materials_specular.
 #pragma once
 
-#include <filesystem>
-#include <string_view>
-
 #include "lobefit/export/targets/target.h"
-#include "lobefit/renderer/surface.h"
 
 namespace lobefit {
 
-// What a glTF material holds of a fit: one lobe, a base colour for metal and diffuse base alike.
-struct GltfMaterial {
-  Color3 base_color = {1, 1, 1};
-  double metallic = 1;
-  RoughnessPair roughness = {1, 0};  // roughnessFactor, anisotropyStrength
-  double rotation = 0;               // radians
-  double ior = 1.5;
-  double specular = 1;
-  Color3 specular_color = {1, 1, 1};
-  Vec3 normal = {0, 0, 1};
-};
-GltfMaterial GltfOf(const FittedBrdf& fit);
-// [glTF 2.0 appendix B and the extensions]: Schlick's term, height-correlated masking of both widths, the diffuse part
-// under the largest channel of the dielectric's Fresnel term.
-Surface GltfSurface(const GltfMaterial& material);
 // One file, with a small curved swatch that has tangents, so that any viewer shows the material.
-WrittenFiles WriteGltf(const FittedBrdf& fit, const WriteContext& context);
-
-// The first material of a .gltf file. Throws InputError.
-GltfMaterial ReadGltf(std::string_view bytes, const std::filesystem::path& path);
+Target GltfTarget();
 
 }  // namespace lobefit

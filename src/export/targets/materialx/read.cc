@@ -1,3 +1,6 @@
+#include "lobefit/export/targets/materialx/read.h"
+
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -6,8 +9,10 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
-#include "lobefit/export/targets/materialx/write.h"
+#include "lobefit/export/targets/materialx/inputs.h"
 #include "lobefit/io/text/xml_file.h"
+#include "lobefit/renderer/open_pbr.h"
+#include "lobefit/renderer/surface.h"
 
 namespace lobefit {
 namespace {
@@ -18,21 +23,36 @@ class MaterialXReader {
     for (const pugi::xml_node node : xml_.root().children()) nodes_[node.attribute("name").value()] = node;
   }
 
-  MaterialXDocument Read() const {
+  ImportedMaterial Read() const {
     const pugi::xml_node material = xml_.root().child("surfacematerial");
     if (!material) xml_.Fail(xml_.root(), "holds no <surfacematerial>");
+    CheckInputs(material);
     const pugi::xml_node shader = Source(material, "surfaceshader");
     const std::string type = shader.name();
-    if (type == "open_pbr_surface") return {OpenPbrSurface(ReadOpenPbr(shader)), true};
-    if (type != "surface") {
+    if (type != "surface" && type != "open_pbr_surface") {
       xml_.Fail(shader,
                 fmt::format("the shader <{}> is not understood; surface and open_pbr_surface are", Excerpt(type)));
     }
-    MaterialXDocument document;
-    document.surface.masking = SurfaceMasking::kMeanAlpha;
-    document.surface.energy_compensation = true;
-    Add(Source(shader, "bsdf"), 1, 0, &document.surface);
-    return document;
+    CheckInputs(shader);
+    Surface surface;
+    if (type == "open_pbr_surface") {
+      surface = OpenPbrSurface(ReadOpenPbr(shader));
+    } else {
+      surface.masking = SurfaceMasking::kMeanAlpha;
+      surface.energy_compensation = true;
+      Add(Source(shader, "bsdf"), 1, 0, &surface);
+    }
+    ImportedMaterial result = {type == "surface" ? "materialx" : "openpbr",
+                               {{"R", "G", "B"}, {}},
+                               SurfaceBrdf(surface),
+                               {"evaluated as MaterialX' GLSL does"}};
+    for (pugi::xml_node other = material.next_sibling("surfacematerial"); other;
+         other = other.next_sibling("surfacematerial")) {
+      result.remarks.push_back(fmt::format("the material '{}' of line {} is left out: the first one, '{}', is taken",
+                                           Excerpt(other.attribute("name").value()), xml_.Line(other),
+                                           Excerpt(material.attribute("name").value())));
+    }
+    return result;
   }
 
  private:
@@ -41,6 +61,38 @@ class MaterialXReader {
       if (name == child.attribute("name").value()) return child;
     }
     return {};
+  }
+
+  // Every input of a node is known, and those that are not evaluated have no effect.
+  void CheckInputs(pugi::xml_node node) const {
+    const std::string type = node.name();
+    const std::vector<MaterialXInput>& known = MaterialXInputs().at(type);
+    for (const pugi::xml_node input : node.children("input")) {
+      const std::string name = input.attribute("name").value();
+      const auto found =
+          std::find_if(known.begin(), known.end(), [&](const MaterialXInput& one) { return name == one.name; });
+      if (found == known.end()) {
+        std::vector<std::string> names;
+        for (const MaterialXInput& one : known) names.emplace_back(one.name);
+        xml_.Fail(input, fmt::format("the input '{}' of <{}> is not understood{}", Excerpt(name), type,
+                                     DidYouMean(name, names)));
+      }
+      if (found->only != nullptr && !HasValue(input, found->only)) {
+        xml_.Fail(input, fmt::format("the input '{}' of <{}> is {}; only {} is understood", Excerpt(name), type,
+                                     input.attribute("value") ? "'" + Excerpt(input.attribute("value").value()) + "'"
+                                                              : std::string("no constant"),
+                                     found->only));
+      }
+    }
+  }
+
+  // The same numbers, one for all where the value has more (an opacity may be a colour), or the same word.
+  static bool HasValue(pugi::xml_node input, std::string_view only) {
+    const std::string_view value = input.attribute("value").value();
+    const std::vector<std::string_view> found = Split(value, ','), wanted = Split(only, ',');
+    if (!ParseDouble(wanted[0])) return Trim(value) == only;
+    return std::all_of(found.begin(), found.end(),
+                       [&](std::string_view field) { return ParseDouble(field) == ParseDouble(wanted[0]); });
   }
 
   // The node that feeds an input; fails where there is none.
@@ -77,8 +129,18 @@ class MaterialXReader {
     return {values[0], values[1], values[2]};
   }
 
+  Spectrum ColorSpectrum(pugi::xml_node node, const char* name, const Color3& otherwise) const {
+    return ToSpectrum(Color(node, name, otherwise));
+  }
+
+  // A graph in which every node feeds the next one twice is small as a file and endless as a tree.
+  void CountVisit(pugi::xml_node node) const {
+    if (++visits_ > kMostVisits) xml_.Fail(node, "the graph of nodes is too large");
+  }
+
   // A vector that is made of the mesh's frame by multiply, add and normalize.
   Vec3 Vector(pugi::xml_node node, int depth = 0) const {
+    CountVisit(node);
     const std::string type = node.name();
     if (type == "tangent") return {1, 0, 0};
     if (type == "bitangent") return {0, 1, 0};
@@ -101,7 +163,10 @@ class MaterialXReader {
 
   void Add(pugi::xml_node node, double weight, int depth, Surface* surface) const {
     const std::string type = node.name();
+    CountVisit(node);
     if (depth > 16) xml_.Fail(node, "the graph of BSDFs is too deep");
+    const bool is_bsdf = type == "add" || type == "mix" || type.ends_with("_bsdf");
+    if (is_bsdf && MaterialXInputs().count(type) > 0) CheckInputs(node);
     const double own = weight * Real(node, "weight", 1);
     if (type == "add") {
       Add(Source(node, "in1"), weight, depth + 1, surface);
@@ -111,9 +176,9 @@ class MaterialXReader {
       Add(Source(node, "fg"), weight * mix, depth + 1, surface);
       Add(Source(node, "bg"), weight * (1 - mix), depth + 1, surface);
     } else if (type == "oren_nayar_diffuse_bsdf") {
-      if (Real(node, "roughness", 0) != 0) xml_.Fail(node, "a diffuse BSDF with a roughness is not understood");
       const Color3 color = Color(node, "color", {0.18, 0.18, 0.18});
       for (std::size_t c = 0; c < 3; ++c) surface->diffuse[c] += own * color[c];
+      if (Input(node, "normal")) surface->diffuse_normal = Normalized(VectorInput(node, "normal", {0, 0, 1}));
     } else if (type == "generalized_schlick_bsdf" || type == "conductor_bsdf") {
       AddLobe(node, own, surface);
     } else {
@@ -132,13 +197,11 @@ class MaterialXReader {
     lobe.rotation = RotationOf(VectorInput(node, "tangent", {1, 0, 0}), lobe.normal);
     if (std::string_view(node.name()) == "conductor_bsdf") {
       lobe.fresnel.kind = SurfaceFresnel::Kind::kConductor;
-      lobe.fresnel.eta = Color(node, "ior", {0.183, 0.421, 1.373});
-      lobe.fresnel.k = Color(node, "extinction", {3.424, 2.346, 1.770});
+      lobe.fresnel.eta = ColorSpectrum(node, "ior", {0.183, 0.421, 1.373});
+      lobe.fresnel.k = ColorSpectrum(node, "extinction", {3.424, 2.346, 1.770});
     } else {
-      lobe.fresnel.f0 = Color(node, "color0", {1, 1, 1});
-      lobe.fresnel.f90 = Color(node, "color90", {1, 1, 1});
-      const bool tinted = Color(node, "color82", {1, 1, 1}) != Color3{1, 1, 1} || Real(node, "exponent", 5) != 5;
-      if (tinted) xml_.Fail(node, "color82 and exponents other than 5 are not understood");
+      lobe.fresnel.f0 = ColorSpectrum(node, "color0", {1, 1, 1});
+      lobe.fresnel.f90 = ColorSpectrum(node, "color90", {1, 1, 1});
     }
     surface->lobes.push_back(lobe);
   }
@@ -146,6 +209,7 @@ class MaterialXReader {
   OpenPbr ReadOpenPbr(pugi::xml_node node) const {
     OpenPbr parameters;
     parameters.base_color = Color(node, "base_color", parameters.base_color);
+    parameters.base_weight = Real(node, "base_weight", 1);
     parameters.metalness = Real(node, "base_metalness", 0);
     parameters.ior = Real(node, "specular_ior", 1.5);
     parameters.roughness = {Real(node, "specular_roughness", 0.3), Real(node, "specular_roughness_anisotropy", 0)};
@@ -154,15 +218,19 @@ class MaterialXReader {
     return parameters;
   }
 
+  static constexpr std::size_t kMostVisits = 4096;
+
   XmlFile xml_;
   std::map<std::string, pugi::xml_node> nodes_;
+  mutable std::size_t visits_ = 0;
 };
 
 }  // namespace
 
-MaterialXDocument ReadMaterialX(std::string_view bytes, const std::filesystem::path& path) {
-  const InputFile file = {path, bytes};
-  return MaterialXReader(file).Read();
+bool IsMaterialX(std::string_view bytes) {
+  return Trim(bytes).starts_with("<") && bytes.find("<materialx") != std::string_view::npos;
 }
+
+ImportedMaterial ReadMaterialX(const InputFile& file) { return MaterialXReader(file).Read(); }
 
 }  // namespace lobefit

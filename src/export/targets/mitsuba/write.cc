@@ -1,8 +1,14 @@
 #include "lobefit/export/targets/mitsuba/write.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "lobefit/base/file.h"
+#include "lobefit/export/targets/features.h"
+#include "lobefit/export/targets/mitsuba/components.h"
+#include "lobefit/export/targets/mitsuba/read.h"
+#include "lobefit/export/targets/spectra.h"
 #include "lobefit/export/targets/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/renderer/normal_map.h"
@@ -10,48 +16,102 @@
 namespace lobefit {
 namespace {
 
-// A component in both spellings, and its share of the blend.
-struct Component {
-  std::string xml, python;
-  double share;
-};
-
-std::string Indented(const std::string& text, const std::string& by) {
-  std::string result = by;
-  for (const char c : text) {
-    result += c;
-    if (c == '\n') result += by;
+std::vector<Carried> CarriesMitsuba(const FittedBrdf& fit) {
+  std::vector<Carried> rows = CarriesConductors(fit, Masking::kSmithSeparable, "separable Smith");
+  if (!fit.IsRgbOrGrey()) {
+    Mark(&rows, Feature::kChannels, Carries::kApproximately,
+         "spectra, linear between the wavelengths and constant beyond them; rgb variants make R G B of eta and of k");
   }
-  return result;
+  return rows;
 }
 
-Component LobeComponent(const SurfaceLobe& lobe) {
-  Component component;
-  component.share = lobe.weight;
-  component.xml = fmt::format(
-      "<bsdf type=\"roughconductor\">\n  <string name=\"distribution\" value=\"ggx\"/>\n"
-      "  <float name=\"alpha_u\" value=\"{}\"/>\n  <float name=\"alpha_v\" value=\"{}\"/>\n"
-      "  <rgb name=\"eta\" value=\"{}\"/>\n  <rgb name=\"k\" value=\"{}\"/>\n</bsdf>",
-      Number9(lobe.widths.alpha_1), Number9(lobe.widths.alpha_2), Numbers9(lobe.fresnel.eta, ", "),
-      Numbers9(lobe.fresnel.k, ", "));
-  component.python = fmt::format(
-      "{{'type': 'roughconductor', 'distribution': 'ggx', 'alpha_u': {}, 'alpha_v': {},\n"
-      " 'eta': constant({}), 'k': constant({})}}",
-      Number9(lobe.widths.alpha_1), Number9(lobe.widths.alpha_2), Numbers9(lobe.fresnel.eta, ", "),
-      Numbers9(lobe.fresnel.k, ", "));
-  return component;
+Model SeparableModel(const FittedBrdf& fit) { return OwnModel(fit, Masking::kSmithSeparable, kAnyNumber); }
+BrdfFunction EvaluateMitsuba(const FittedBrdf& fit) { return InChannelsOf(fit, SurfaceBrdf(MitsubaSurface(fit))); }
+
+// Spectral variants fit a spectrum of reflectance to an rgb value, which ends at 1.
+bool IsClampedInSpectralVariants(const FittedBrdf& fit, const Surface& surface) {
+  return fit.IsRgbOrGrey() && std::any_of(surface.lobes.begin(), surface.lobes.end(), [](const SurfaceLobe& lobe) {
+           const auto above_one = [](double value) { return value > 1; };
+           return std::any_of(lobe.fresnel.eta.begin(), lobe.fresnel.eta.end(), above_one) ||
+                  std::any_of(lobe.fresnel.k.begin(), lobe.fresnel.k.end(), above_one);
+         });
 }
 
-void Tilt(const std::string& map, Component* component) {
-  component->xml = fmt::format(
-      "<bsdf type=\"normalmap\">\n  <texture type=\"bitmap\" name=\"normalmap\">\n"
-      "    <string name=\"filename\" value=\"{}\"/>\n    <boolean name=\"raw\" value=\"true\"/>\n  </texture>\n"
-      "  <boolean name=\"use_shadowing_function\" value=\"false\"/>\n{}\n</bsdf>",
-      map, Indented(component->xml, "  "));
-  component->python = fmt::format(
-      "{{'type': 'normalmap', 'use_shadowing_function': False,\n 'normalmap': {{'type': 'bitmap', 'filename': "
-      "os.path.join(folder, '{}'), 'raw': True}},\n 'nested_bsdf':\n{}}}",
-      map, Indented(component->python, " "));
+// What the user has to know beside loading the file.
+std::vector<std::string> Notes(const FittedBrdf& fit, const Surface& surface, const std::vector<std::string>& maps) {
+  std::vector<std::string> notes;
+  if (!maps.empty()) {
+    notes.emplace_back(
+        "The XML needs Mitsuba 3.7.1 or newer: before, take out the lines with use_shadowing_function, which 3.0 to "
+        "3.7.0 refuse and do not need. The Python file asks for the version itself.");
+    notes.push_back(MapComment(maps, "the main scene file, also where this file is included from another folder"));
+  }
+  if (IsClampedInSpectralVariants(fit, surface)) {
+    notes.emplace_back(
+        "For rgb variants: spectral ones clamp eta and k to 1, so that this material is too dark or of a wrong colour "
+        "there; use the _spec.bsdf of the target rgl there.");
+  }
+  notes.emplace_back("One-sided, as every conductor is: <bsdf type=\"twosided\"> around it lights back faces.");
+  return notes;
+}
+
+std::string PythonText(const std::vector<std::string>& header, const std::string& material, bool spectral) {
+  const std::string variant = spectral ? "a spectral" : "an rgb";
+  return CommentLines(header, "#") + "import os\n\n\ndef material(mi, np):\n    \"\"\"The BSDF for mi.load_dict, of " +
+         variant +
+         " variant; mi and np are the modules mitsuba and numpy.\"\"\"\n"
+         "    folder = os.path.dirname(os.path.abspath(__file__))\n"
+         "    version = tuple(int(part) for part in mi.__version__.split('.')[:3])\n"
+         "    shadowing = {'use_shadowing_function': False} if version >= (3, 7, 1) else {}\n\n"
+         "    def constant(*rgb):\n        pixel = mi.Bitmap(np.array([[rgb]], dtype=np.float32))\n"
+         "        return {'type': 'bitmap', 'bitmap': pixel, 'raw': True}\n\n    return (\n" +
+         Indented(material, "        ") + ")\n";
+}
+
+WrittenFiles WriteMitsuba(const FittedBrdf& fit, const WriteContext& context) {
+  const Surface surface = MitsubaSurface(fit);
+  const std::vector<double> wavelengths = fit.IsRgbOrGrey() ? std::vector<double>() : fit.material().wavelengths_nm;
+  const double rotation = CommonRotation(fit);
+  WrittenFiles written;
+  std::vector<MitsubaComponent> components;
+  std::vector<std::string> maps;
+  for (std::size_t l = 0; l < surface.lobes.size(); ++l) {
+    components.push_back(MitsubaLobe(surface.lobes[l], wavelengths));
+    if (surface.lobes[l].normal.z < 1) {
+      const std::filesystem::path map = context.File(fmt::format("_normal{}.png", l + 1));
+      WriteFileAtomically(map, NormalMapPng(RotateZ(surface.lobes[l].normal, -rotation)));
+      written.files.push_back(map);
+      maps.push_back(context.map_path + map.filename().string());
+      Tilt(maps.back(), map.filename().string(), &components.back());
+    }
+  }
+  if (fit.HasDiffuse() || components.empty()) {
+    const double share = SharesOf(fit).diffuse;
+    Spectrum reflectance = surface.diffuse;
+    for (double& value : reflectance) value /= share;
+    components.push_back(MitsubaDiffuse(reflectance, share, wavelengths));
+  }
+  const MitsubaComponent whole = Blend(std::move(components));
+
+  written.notes = Notes(fit, surface, maps);
+  std::vector<std::string> header = context.header;
+  header.insert(header.end(), written.notes.begin(), written.notes.end());
+  for (const std::string& line : RotationComment(rotation)) header.push_back(line);
+  std::string xml = whole.xml;
+  xml.insert(5, fmt::format(" id=\"{}\"", Identifier(context.name)));
+  const std::filesystem::path path = context.File(".mitsuba.xml"), python = context.File(".mitsuba.py");
+  WriteFileAtomically(path, XmlComment(header) + "<scene version=\"3.0.0\">\n" + Indented(xml, "  ") + "\n</scene>\n");
+  WriteFileAtomically(python, PythonText(header, whole.python, !wavelengths.empty()));
+  written.files.insert(written.files.begin(), {path, python});
+  const MappedFile bytes(path);
+  const ImportedMaterial back = ReadMitsuba({path, bytes.bytes()});
+  written.brdf = wavelengths.empty() ? InChannelsOf(fit, back.brdf)
+                                     : AtWavelengths(back.brdf, back.channels.wavelengths_nm, wavelengths);
+  if (rotation != 0) {
+    written.notes.push_back(fmt::format("turn the mesh's texture coordinates by {:.4g} degrees (the file says how)",
+                                        RadiansToDegrees(rotation)));
+  }
+  return written;
 }
 
 }  // namespace
@@ -61,6 +121,7 @@ Surface MitsubaSurface(const FittedBrdf& fit) {
   surface.masking = SurfaceMasking::kSeparable;
   const Shares shares = SharesOf(fit);
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
+    if (shares.lobes[l] == 0) continue;
     SurfaceLobe lobe = LobeOf(fit, l, shares.lobes[l]);
     lobe.rotation = CommonRotation(fit);
     lobe.fresnel = ConductorFresnelOf(fit, l, shares.lobes[l]);
@@ -70,61 +131,18 @@ Surface MitsubaSurface(const FittedBrdf& fit) {
   return surface;
 }
 
-WrittenFiles WriteMitsuba(const FittedBrdf& fit, const WriteContext& context) {
-  const Surface surface = MitsubaSurface(fit);
-  const double rotation = CommonRotation(fit);
-  WrittenFiles written;
-  std::vector<Component> components;
-  for (std::size_t l = 0; l < surface.lobes.size(); ++l) {
-    components.push_back(LobeComponent(surface.lobes[l]));
-    if (surface.lobes[l].normal.z < 1) {
-      const std::filesystem::path map = context.File(fmt::format("_normal{}.png", l + 1));
-      WriteFileAtomically(map, NormalMapPng(RotateZ(surface.lobes[l].normal, -rotation)));
-      written.files.push_back(map);
-      Tilt(map.filename().string(), &components.back());
-    }
-  }
-  if (fit.HasDiffuse() || components.empty()) {
-    const double share = SharesOf(fit).diffuse;
-    Color3 reflectance = surface.diffuse;
-    for (double& value : reflectance) value /= share;
-    components.push_back({fmt::format("<bsdf type=\"diffuse\">\n  <rgb name=\"reflectance\" value=\"{}\"/>\n</bsdf>",
-                                      Numbers9(reflectance, ", ")),
-                          fmt::format("{{'type': 'diffuse', 'reflectance': {{'type': 'rgb', 'value': [{}]}}}}",
-                                      Numbers9(reflectance, ", ")),
-                          share});
-  }
-  // The weight of a blend is the share of its second.
-  Component rest = components.back();
-  for (std::size_t i = components.size() - 1; i-- > 0;) {
-    const double share = components[i].share + rest.share;
-    const std::string weight = Number9(rest.share / share);
-    rest = {fmt::format("<bsdf type=\"blendbsdf\">\n  <float name=\"weight\" value=\"{}\"/>\n{}\n{}\n</bsdf>", weight,
-                        Indented(components[i].xml, "  "), Indented(rest.xml, "  ")),
-            fmt::format("{{'type': 'blendbsdf', 'weight': {},\n 'first':\n{},\n 'second':\n{}}}", weight,
-                        Indented(components[i].python, " "), Indented(rest.python, " ")),
-            share};
-  }
-  std::vector<std::string> header = context.header;
-  for (const std::string& line : RotationComment(rotation)) header.push_back(line);
-  std::string xml = rest.xml;
-  xml.insert(5, fmt::format(" id=\"{}\"", Identifier(context.name)));
-  const std::filesystem::path path = context.File(".mitsuba.xml"), python = context.File(".mitsuba.py");
-  WriteFileAtomically(path, XmlComment(header) + "<scene version=\"3.0.0\">\n" + Indented(xml, "  ") + "\n</scene>\n");
-  WriteFileAtomically(
-      python, CommentLines(header, "#") + "import os\n\n\ndef material(mi, np):\n" +
-                  "    \"\"\"The BSDF for mi.load_dict, of an rgb variant; mi and np are the modules mitsuba and "
-                  "numpy.\"\"\"\n    folder = os.path.dirname(os.path.abspath(__file__))\n\n" +
-                  "    def constant(*rgb):\n        pixel = mi.Bitmap(np.array([[rgb]], dtype=np.float32))\n" +
-                  "        return {'type': 'bitmap', 'bitmap': pixel, 'raw': True}\n\n    return (\n" +
-                  Indented(rest.python, "        ") + ")\n");
-  written.files.insert(written.files.begin(), {path, python});
-  written.brdf = InChannelsOf(fit, context.read_back(path).brdf);
-  if (rotation != 0) {
-    written.notes.push_back(fmt::format("turn the mesh's texture coordinates by {:.4g} degrees (the file says how)",
-                                        RadiansToDegrees(rotation)));
-  }
-  return written;
+Target MitsubaTarget() {
+  return {.name = "mitsuba",
+          .description = "Mitsuba 3: roughconductor and diffuse, as XML and Python dict",
+          .load =
+              "<include filename=\"{name}.mitsuba.xml\"/>, then <ref id=\"{id}\"/>, for back faces within <bsdf "
+              "type=\"twosided\">",
+          .carries = CarriesMitsuba,
+          .own_model = SeparableModel,
+          .evaluate = EvaluateMitsuba,
+          .write = WriteMitsuba,
+          .recognises = IsMitsuba,
+          .read = ReadMitsuba};
 }
 
 }  // namespace lobefit

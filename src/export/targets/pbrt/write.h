@@ -1,23 +1,17 @@
-// pbrt-v4: `conductor` with its reflectance, mixed with `diffuse`.
+// pbrt-v4: `conductor` mixed with `diffuse`.
 #pragma once
-
-#include <filesystem>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "lobefit/export/targets/target.h"
 #include "lobefit/renderer/surface.h"
 
 namespace lobefit {
 
-// The fit as pbrt evaluates it: exact Fresnel of eta = 1 and the k of each reflectance, height-correlated masking, one
-// tangent for all lobes.
-Surface PbrtSurface(const FittedBrdf& fit);
-WrittenFiles WritePbrt(const FittedBrdf& fit, const WriteContext& context);
+Target PbrtTarget();
 
-// The last material of the text. Named materials of the types conductor (by reflectance, or rgb eta and k), diffuse
-// and mix are understood. Throws InputError with file and line.
-Surface ReadPbrt(std::string_view text, const std::filesystem::path& path);
+// The fit as pbrt evaluates it: exact Fresnel, height-correlated masking, one tangent for all lobes. A lobe of grey or
+// hardly coloured reflectance, and one of a spectrum, gets the index whose curve is nearest to the fit's; a saturated
+// one of R, G, B keeps eta = 1 and the k of its reflectance (`reflectance`), since pbrt makes spectra of eta and k one
+// by one. A width below 1e-3 becomes 1e-3 where the other is below that too: pbrt makes a mirror of such a lobe.
+Surface PbrtSurface(const FittedBrdf& fit);
 
 }  // namespace lobefit

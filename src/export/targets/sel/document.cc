@@ -49,22 +49,23 @@ ErrorMeter SelErrorMeter(const Material& material) {
 
 std::vector<Carried> CarriesSel(const Material& material) {
   const std::string note = "the table itself";
-  std::vector<Carried> rows = {{"lobes", Carries::kExactly, note}, {"interpolation", Carries::kExactly, note}};
-  if (material.sel->bound) rows.push_back({"upper bound of the samples", Carries::kExactly, note});
-  rows.push_back({"channels", Carries::kExactly, note});
+  std::vector<Carried> rows = {{Feature::kLobes, Carries::kExactly, note},
+                               {Feature::kInterpolation, Carries::kExactly, note}};
+  if (material.sel->bound) rows.push_back({Feature::kBound, Carries::kExactly, note});
+  rows.push_back({Feature::kChannels, Carries::kExactly, note});
   return rows;
 }
 
 WrittenFiles WriteSelJson(const Material& material, const WriteContext& context) {
   const std::filesystem::path path = context.File(".material.json");
   WriteMaterial(material, path);
-  return {{path}, context.read_back(path).brdf, true, {}};
+  return {{path}, SelBrdf(*ReadMaterial(path).sel), true, {}};
 }
 
 WrittenFiles WriteSelGlsl(const Material& material, const WriteContext& context) {
   const std::filesystem::path path = context.File(".glsl");
-  WriteFileAtomically(
-      path, SelGlslText(SelReflectance(*material.sel), {material.channels, material.wavelengths_nm}, context.header));
+  WriteFileAtomically(path, SelGlslText(SelReflectance(*material.sel), {material.channels, material.wavelengths_nm},
+                                        context.name, context.header));
   return {{path},
           SelBrdf(Single(*material.sel)),
           true,

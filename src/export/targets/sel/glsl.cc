@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/text.h"
+#include "lobefit/export/targets/shader_text.h"
 #include "lobefit/export/targets/text.h"
 #include "lobefit/renderer/fitted_brdf.h"
 
@@ -66,6 +67,10 @@ std::string TableText(const SelReflectance& reflectance) {
          Array("float", "lobefit_level", level);
 }
 
+std::string BoundName(const SelTable& table) {
+  return table.quantity == SelQuantity::kBrdfCosineO ? "f_r_cos_bound" : "f_r_bound";
+}
+
 // The two functions for R G B or grey as vec3, or for other channels as arrays.
 std::string Interface(const SelTable& table, const Channels& channels, bool rgb_or_grey) {
   const bool cosine = table.quantity == SelQuantity::kBrdfCosineO;
@@ -76,7 +81,7 @@ std::string Interface(const SelTable& table, const Channels& channels, bool rgb_
       "// {} is at most this at every wo within half_angle (radians) of the unit vector axis; as tight as 1 % a lobe\n"
       "// but for lobes very narrow against the cone.\n",
       cosine ? "f_r cos(theta_o)" : "f_r");
-  const char* bound_name = cosine ? "lobefit_f_r_cos_bound" : "lobefit_f_r_bound";
+  const std::string bound_name = "lobefit_" + BoundName(table);
   if (!rgb_or_grey) {
     const std::size_t n = channels.size();
     return fmt::format(
@@ -96,10 +101,16 @@ std::string Interface(const SelTable& table, const Channels& channels, bool rgb_
 
 }  // namespace
 
-std::string SelGlslText(const SelReflectance& reflectance, const Channels& channels,
+std::string SelGlslText(const SelReflectance& reflectance, const Channels& channels, const std::string& name,
                         const std::vector<std::string>& header) {
-  return CommentLines(header, "//") + TableText(reflectance) + kEvaluation +
-         Interface(reflectance.table(), channels, IsRgbOrGrey(channels));
+  const std::string prefix = GlslPrefix(name);
+  std::string text =
+      TableText(reflectance) + kEvaluation + Interface(reflectance.table(), channels, IsRgbOrGrey(channels));
+  text = Replaced(text, "lobefit_", prefix);
+  text = Replaced(text, "Lobefit", "Lobefit_" + prefix.substr(std::string("lobefit_").size()));
+  const std::string bound = BoundName(reflectance.table());
+  return CommentLines(header, "//") + text + GlslShortName("f_r", prefix + "f_r") +
+         GlslShortName(bound, prefix + bound);
 }
 
 }  // namespace lobefit

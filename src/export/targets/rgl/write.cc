@@ -1,26 +1,20 @@
-#include "lobefit/export/targets/tables/write.h"
+#include "lobefit/export/targets/rgl/write.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 #include "lobefit/core/brdf/lobe.h"
 #include "lobefit/export/targets/features.h"
-#include "lobefit/io/bsdf_xml/writer.h"
-#include "lobefit/io/csv/writer.h"
-#include "lobefit/io/merl/writer.h"
+#include "lobefit/export/targets/spectra.h"
+#include "lobefit/io/rgl/brdf.h"
 #include "lobefit/io/rgl/writer.h"
-#include "lobefit/io/write.h"
-#include "lobefit/material/json.h"
-#include "lobefit/math/directions.h"
-#include "lobefit/measurement/interpolation.h"
 #include "lobefit/measurement/spectrum.h"
-#include "lobefit/synthesis/synthesis.h"
 
 namespace lobefit {
 namespace {
@@ -75,45 +69,50 @@ ChannelMap FewerWavelengths(const Channels& channels) {
   return map;
 }
 
-// The function of `from` wavelengths at the wavelengths of `to`, linear between.
-BrdfFunction AtWavelengths(const BrdfFunction& brdf, const std::vector<double>& from, const std::vector<double>& to) {
-  return [=](const Vec3& wi, const Vec3& wo, double* values) {
-    std::vector<double> known(from.size());
-    brdf(wi, wo, known.data());
-    for (std::size_t c = 0; c < to.size(); ++c) {
-      const auto next = static_cast<std::size_t>(std::upper_bound(from.begin(), from.end(), to[c]) - from.begin());
-      const std::size_t hi = std::clamp<std::size_t>(next, 1, from.size() - 1);
-      const double t = std::clamp((to[c] - from[hi - 1]) / (from[hi] - from[hi - 1]), 0.0, 1.0);
-      values[c] = (1 - t) * known[hi - 1] + t * known[hi];
-    }
-  };
-}
-
 std::string Size(const std::filesystem::path& path) {
   return fmt::format("{:.1f} MB", static_cast<double>(std::filesystem::file_size(path)) / 1e6);
 }
 
+bool IsRglFile(std::string_view bytes) { return bytes.starts_with("tensor_file"); }
+
+ImportedMaterial ReadRglFile(const InputFile& file) {
+  const auto table = std::make_shared<const RglBrdf>(file.path, file.bytes);
+  return {"rgl",
+          table->channels(),
+          [table](const Vec3& wi, const Vec3& wo, double* values) { table->Evaluate(wi, wo, values); },
+          {}};
+}
+
+ImportedMaterial ReadFile(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  return ReadRglFile({path, file.bytes()});
+}
+
+std::vector<Carried> CarriesRgl(const FittedBrdf& fit) {
+  std::vector<Carried> rows = CarriesTable(fit);
+  if (fit.material().channels.size() > kMostWavelengths) {
+    Mark(&rows, Feature::kChannels, Carries::kApproximately,
+         "every k-th wavelength, linear between; R G B in the other file");
+  } else if (fit.IsRgbOrGrey() && fit.material().channels.size() == 3) {
+    Mark(&rows, Feature::kChannels, Carries::kApproximately,
+         "exact in the rgb file; a smooth spectrum of the same R G B in the other");
+  } else {
+    Mark(&rows, Feature::kChannels, Carries::kExactly, "");
+  }
+  return rows;
+}
+
+std::string RefuseRgl(const FittedBrdf& fit) {
+  if (fit.IsRgbOrGrey()) return "";
+  try {
+    MakeChannelMap("rgb", fit.channels());
+    return "";
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+}
+
 }  // namespace
-
-WrittenFiles WriteJsonTarget(const FittedBrdf& fit, const WriteContext& context) {
-  const std::filesystem::path path = context.File(".material.json");
-  WriteMaterial(fit.material(), path);
-  return {{path}, context.read_back(path).brdf, true, {}};
-}
-
-WrittenFiles WriteCsvTarget(const FittedBrdf& fit, const WriteContext& context) {
-  const std::filesystem::path path = context.File(".csv");
-  GoniometerLayout layout;
-  for (int theta = 0; theta <= 80; theta += 10) layout.polar_angles.push_back(DegreesToRadians(theta));
-  const int azimuths = fit.IsIsotropic() ? 1 : 12;
-  for (int a = 0; a < azimuths; ++a) layout.azimuths.push_back(2 * kPi * a / azimuths);
-  layout.detector_step = DegreesToRadians(6);
-  const Measurement samples = Synthesise(Goniometer(layout), fit.channels(), fit.function(), {}, 0);
-  WriteCsv(samples, context.header, path);
-  Measurement back = ReadMeasurement(path);
-  back.isotropic = fit.IsIsotropic();
-  return {{path}, Interpolate(back), false, {"samples; the error is that of interpolation between them"}};
-}
 
 WrittenFiles WriteRglTarget(const FittedBrdf& fit, const WriteContext& context) {
   RglWriteOptions options;
@@ -159,56 +158,25 @@ WrittenFiles WriteRglTarget(const FittedBrdf& fit, const WriteContext& context) 
       "{} for Mitsuba's rgb variants ({}), {} for pbrt-v4 and Mitsuba's spectral variants ({})",
       rgb_path.filename().string(), Size(rgb_path), spectral_path.filename().string(), Size(spectral_path)));
   if (spectral) {
-    const BrdfFunction table = context.read_back(spectral_path).brdf;
+    const BrdfFunction table = ReadFile(spectral_path).brdf;
     written.brdf = AtWavelengths(table, to_spectrum.channels.wavelengths_nm, channels.wavelengths_nm);
   } else {
-    written.brdf = InChannelsOf(fit, context.read_back(rgb_path).brdf);
+    written.brdf = InChannelsOf(fit, ReadFile(rgb_path).brdf);
   }
   return written;
 }
 
-WrittenFiles WriteMerlTarget(const FittedBrdf& fit, const WriteContext& context) {
-  const std::filesystem::path path = context.File(".binary");
-  WriteMerl(fit.function(), fit.channels(), {}, path);
-  return {{path},
-          InChannelsOf(fit, context.read_back(path).brdf),
-          false,
-          {"the error is that of a reader that takes the nearest cell"}};
-}
-
-WrittenFiles WriteBsdfXmlTarget(const FittedBrdf& fit, const WriteContext& context) {
-  const std::filesystem::path path = context.File(".xml");
-  TensorTreeOptions options;
-  options.isotropic = fit.IsIsotropic();
-  WriteTensorTree(fit.function(), fit.channels(), options, path);
-  const Measurement back = ReadMeasurement(path);
-  const BrdfFunction table = Interpolate(back);
-  WrittenFiles written = {{path}, table, false, {}};
-  if (back.channels.names == std::vector<std::string>{"X", "Y", "Z"}) {
-    written.brdf = InChannelsOf(fit, [table](const Vec3& wi, const Vec3& wo, double* values) {
-      std::array<double, 3> xyz = {};
-      table(wi, wo, xyz.data());
-      const std::array<double, 3> rgb = SrgbFromXyz(xyz);
-      std::copy(rgb.begin(), rgb.end(), values);
-    });
-  }
-  return written;
-}
-
-std::string RefuseMerl(const FittedBrdf& fit) {
-  if (fit.IsTilted()) return "its table has no azimuth of the sample, and a lobe of the fit is tilted";
-  if (fit.IsAnisotropic()) return "its table has no azimuth of the sample, and a lobe of the fit is anisotropic";
-  return RefuseSpectra(fit);
-}
-
-std::string RefuseRgl(const FittedBrdf& fit) {
-  if (fit.IsRgbOrGrey()) return "";
-  try {
-    MakeChannelMap("rgb", fit.channels());
-    return "";
-  } catch (const UsageError& error) {
-    return error.what();
-  }
+Target RglTarget() {
+  return {.name = "rgl",
+          .description = "RGL/EPFL tables for Mitsuba 3 and pbrt-v4, tilt and rotation kept",
+          .load =
+              "Mitsuba: <bsdf type=\"measured\"><string name=\"filename\" value=\"{name}_rgb.bsdf\"/></bsdf>; "
+              "pbrt-v4: Material \"measured\" \"string filename\" \"{name}_spec.bsdf\"",
+          .refusal = RefuseRgl,
+          .carries = CarriesRgl,
+          .write = WriteRglTarget,
+          .recognises = IsRglFile,
+          .read = ReadRglFile};
 }
 
 }  // namespace lobefit

@@ -1,0 +1,106 @@
+#include "lobefit/export/targets/brdf_explorer/write.h"
+
+#include <fmt/format.h>
+
+#include "lobefit/export/targets/features.h"
+#include "lobefit/export/targets/shader_text.h"
+#include "lobefit/export/targets/text.h"
+
+namespace lobefit {
+namespace {
+
+// The ellipsoid's slope coordinates, for the sliders; the last entry of the diagonal by the determinant, which does not
+// cancel in single precision.
+constexpr const char* kSlopeText = R"(
+// Sine and cosine for -pi/2..pi/2 to single precision: those of GPUs may be off by 5e-4.
+float lobefit_sin(float x) {
+  float y = x * x;
+  return x * (1.0 + y * (-1.0 / 6.0 + y * (1.0 / 120.0 + y * (-1.0 / 5040.0 + y * (1.0 / 362880.0 - y / 39916800.0)))));
+}
+float lobefit_cos(float x) { return lobefit_sin(1.57079633 - abs(x)); }
+float lobefit_ellipsoid(vec3 wi, vec3 wo, vec3 h, float ax, float ay, float tx_deg, float ty_deg, float tz_deg,
+                        int family, int masking) {
+  float tx = radians(tx_deg);
+  float ty = radians(ty_deg);
+  float tz = radians(tz_deg);
+  float cx = lobefit_cos(tx), sx = lobefit_sin(tx), cy = lobefit_cos(ty), sy = lobefit_sin(ty);
+  float cz = lobefit_cos(tz), sz = lobefit_sin(tz);
+  vec3 r1 = vec3(cy * cz, -cy * sz, sy);
+  vec3 r2 = vec3(cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy);
+  vec3 r3 = vec3(sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy);
+  float x2 = ax * ax, y2 = ay * ay;
+  float m33 = x2 * r1.z * r1.z + y2 * r2.z * r2.z + r3.z * r3.z;
+  float slope_x = -(x2 * r1.x * r1.z + y2 * r2.x * r2.z + r3.x * r3.z) / m33;
+  float slope_y = -(x2 * r1.y * r1.z + y2 * r2.y * r2.z + r3.y * r3.z) / m33;
+  float q11 = y2 * r1.y * r1.y + x2 * r2.y * r2.y + x2 * y2 * r3.y * r3.y;
+  float q12 = -(y2 * r1.x * r1.y + x2 * r2.x * r2.y + x2 * y2 * r3.x * r3.y);
+  float a = sqrt(q11) / m33;
+  float b = q12 / (m33 * m33 * a);
+  float c = ax * ay / (m33 * sqrt(m33) * a);
+  return lobefit_lobe(wi, wo, h, slope_x, slope_y, a, b, c, family, masking);
+}
+)";
+
+WrittenFiles WriteBrdfExplorer(const FittedBrdf& fit, const WriteContext& context) {
+  return WriteShader(fit, context.File(".brdf"), BrdfExplorerText(fit, context.header));
+}
+
+}  // namespace
+
+std::string BrdfExplorerText(const FittedBrdf& fit, const std::vector<std::string>& header) {
+  // The program reads the first line before it drops comments.
+  std::string text = "analytic\n" + CommentLines(header, "#") + "\n::begin parameters\n";
+  const std::vector<Parameter> parameters = Parameters(fit.material().model);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const Parameter& parameter = parameters[p];
+    const std::vector<double>& values = fit.material().parameters[p].values;
+    const double factor = 1 / InsideFactor(parameter);
+    const std::string name = Identifier(parameter.json_name);
+    if (parameter.per_channel) {
+      const auto at = [&](std::size_t c) { return FloatLiteral(values[values.size() == 1 ? 0 : c]); };
+      text += fmt::format("color {} {} {} {}\n", name, at(0), at(1), at(2));
+    } else {
+      text += fmt::format("float {} {} {} {}\n", name, FloatLiteral(parameter.low * factor),
+                          FloatLiteral(parameter.high * factor), FloatLiteral(values[0] * factor));
+    }
+  }
+  text += fmt::format("::end parameters\n\n::begin shader\n{}{}\n", kShaderLobeText, kSlopeText);
+  text += "vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y) {\n";
+  text += "  vec3 wi = vec3(dot(L, X), dot(L, Y), dot(L, N)), wo = vec3(dot(V, X), dot(V, Y), dot(V, N));\n";
+  text += "  if (wi.z <= 0.0 || wo.z <= 0.0) { return vec3(0.0); }\n";
+  text += kShaderHalfText;
+  text += fit.material().model.diffuse == Diffuse::kLambert ? "  vec3 f_r = diffuse / 3.14159265358979;\n"
+                                                            : "  vec3 f_r = vec3(0.0);\n";
+  for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
+    const std::string prefix = l == 0 ? "" : fmt::format("lobe{}_", l + 1);
+    const FittedLobe& lobe = fit.lobes()[l];
+    // Where the distribution ties alpha_y, one slider moves both.
+    const bool tied = IsRound(lobe.choices.ndf);
+    text += fmt::format(
+        "  f_r += lobefit_ellipsoid(wi, wo, h, {0}alpha_x, {0}{1}, {0}theta_x_deg, {0}theta_y_deg, {0}theta_z_deg, "
+        "{2}, "
+        "{3}) *\n         vec3(",
+        prefix, tied ? "alpha_x" : "alpha_y", ShaderFamily(lobe), ShaderMasking(lobe));
+    for (const char* channel : {".r", ".g", ".b"}) {
+      std::vector<std::string> names;
+      const std::size_t first = FirstParameter(fit.material().model, l) + kShapeParameters;
+      for (std::size_t k = 0; k < FresnelParameters(lobe.choices.fresnel); ++k) {
+        names.push_back(Identifier(parameters[first + k].name) + channel);
+      }
+      text += ShaderFresnel(lobe.choices.fresnel, names) + (channel[1] == 'b' ? ");\n" : ", ");
+    }
+  }
+  return text + "  return f_r;\n}\n::end shader\n";
+}
+
+Target BrdfExplorerTarget() {
+  return {.name = "brdf-explorer",
+          .description = "Disney BRDF Explorer, parameters as sliders",
+          .load = "brdf {name}.brdf",
+          .rgb_only = true,
+          .refusal = RefuseUnknownTerms,
+          .carries = CarriesModelItself,
+          .write = WriteBrdfExplorer};
+}
+
+}  // namespace lobefit

@@ -1,0 +1,10 @@
+// Samples over a goniometer's directions.
+#pragma once
+
+#include "lobefit/export/targets/target.h"
+
+namespace lobefit {
+
+Target CsvTarget();
+
+}  // namespace lobefit

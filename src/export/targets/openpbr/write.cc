@@ -1,0 +1,72 @@
+#include "lobefit/export/targets/openpbr/write.h"
+
+#include <fmt/format.h>
+
+#include "lobefit/base/file.h"
+#include "lobefit/export/targets/features.h"
+#include "lobefit/export/targets/materialx/nodes.h"
+#include "lobefit/export/targets/materialx/read.h"
+#include "lobefit/export/targets/materialx/write.h"
+#include "lobefit/export/targets/text.h"
+#include "lobefit/renderer/open_pbr.h"
+
+namespace lobefit {
+namespace {
+
+std::vector<Carried> CarriesOpenPbr(const FittedBrdf& fit) {
+  const OpenPbr written = OpenPbrOf(fit);
+  const double root = (written.ior - 1) / (written.ior + 1);
+  Spectrum f0;
+  for (const double base : written.base_color)
+    f0.push_back(written.metalness * base + (1 - written.metalness) * root * root);
+  return CarriesMetalBase(fit, CarriesLobes(fit, Masking::kImplicit, kMaterialXMasking), f0);
+}
+
+Model OneLobeModel(const FittedBrdf& fit) { return OwnModel(fit, Masking::kSmithHeight, 1); }
+BrdfFunction EvaluateOpenPbr(const FittedBrdf& fit) {
+  return InChannelsOf(fit, SurfaceBrdf(OpenPbrSurface(OpenPbrOf(fit))));
+}
+
+WrittenFiles WriteOpenPbr(const FittedBrdf& fit, const WriteContext& context) {
+  const OpenPbr parameters = OpenPbrOf(fit);
+  const std::string id = Identifier(context.name);
+  const FrameText frame = FrameNodes(id, parameters.rotation, parameters.normal);
+  const auto real = [](const char* input, double value) {
+    return fmt::format("    <input name=\"{}\" type=\"float\" value=\"{}\"/>\n", input, Number9(value));
+  };
+  const std::string nodes =
+      MeshFrame() + frame.nodes + fmt::format("  <open_pbr_surface name=\"{}_surface\" type=\"surfaceshader\">\n", id) +
+      fmt::format("    <input name=\"base_color\" type=\"color3\" value=\"{}\"/>\n",
+                  Numbers9(parameters.base_color, ", ")) +
+      real("base_metalness", parameters.metalness) + real("base_diffuse_roughness", 0) +
+      real("specular_roughness", parameters.roughness.roughness) +
+      real("specular_roughness_anisotropy", parameters.roughness.anisotropy) + real("specular_ior", parameters.ior) +
+      fmt::format(
+          "    <input name=\"geometry_normal\" type=\"vector3\" nodename=\"{}\"/>\n"
+          "    <input name=\"geometry_tangent\" type=\"vector3\" nodename=\"{}\"/>\n  </open_pbr_surface>\n",
+          frame.normal, frame.tangent) +
+      fmt::format(
+          "  <surfacematerial name=\"{0}\" type=\"material\">\n    <input name=\"surfaceshader\" "
+          "type=\"surfaceshader\" nodename=\"{0}_surface\"/>\n  </surfacematerial>\n",
+          id);
+  const std::filesystem::path path = context.File(".openpbr.mtlx");
+  WriteFileAtomically(path, MaterialXDocument(context, nodes));
+  const MappedFile bytes(path);
+  return {{path}, InChannelsOf(fit, ReadMaterialX({path, bytes.bytes()}).brdf), false, {}};
+}
+
+}  // namespace
+
+Target OpenPbrTarget() {
+  return {.name = "openpbr",
+          .description = "MaterialX 1.39: OpenPBR surface",
+          .load = "reference {name}.openpbr.mtlx, material {id}",
+          .rgb_only = true,
+          .refusal = RefuseNoLobe,
+          .carries = CarriesOpenPbr,
+          .own_model = OneLobeModel,
+          .evaluate = EvaluateOpenPbr,
+          .write = WriteOpenPbr};
+}
+
+}  // namespace lobefit

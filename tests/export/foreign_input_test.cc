@@ -1,0 +1,175 @@
+// Inputs of renderers' files: what is not understood is an error that names it, or stands in the remarks; and what is
+// understood counts.
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+
+#include "tests/support/temporary_file.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/export/import.h"
+#include "lobefit/math/directions.h"
+
+namespace lobefit {
+namespace {
+
+using testing::HasSubstr;
+
+std::string ErrorOf(const std::string& text) {
+  const TemporaryFile file(text);
+  try {
+    ImportMaterial(file.path());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+ImportedMaterial Import(const std::string& text) {
+  const TemporaryFile file(text);
+  return ImportMaterial(file.path());
+}
+
+std::vector<double> ValuesOf(const ImportedMaterial& material) {
+  std::vector<double> values(material.channels.size());
+  material.brdf(FromSpherical(0.3, 0.2), FromSpherical(0.4, 2.9), values.data());
+  return values;
+}
+
+std::string OpenPbr(const std::string& inputs) {
+  return "<materialx version=\"1.39\"><open_pbr_surface name=\"s\" type=\"surfaceshader\">"
+         "<input name=\"base_metalness\" type=\"float\" value=\"1\"/>" +
+         inputs +
+         "</open_pbr_surface><surfacematerial name=\"m\" type=\"material\"><input name=\"surfaceshader\" "
+         "type=\"surfaceshader\" nodename=\"s\"/></surfacematerial></materialx>";
+}
+std::string Input(const char* name, const char* type, const char* value) {
+  return std::string("<input name=\"") + name + "\" type=\"" + type + "\" value=\"" + value + "\"/>";
+}
+
+TEST(OpenPbrInputs, CountOrAreErrors) {
+  const double plain = ValuesOf(Import(OpenPbr("")))[0];
+  EXPECT_NEAR(ValuesOf(Import(OpenPbr(Input("base_weight", "float", "0.5"))))[0] / plain, 0.5, 0.02);
+  // Of no effect, since the layer has no weight.
+  EXPECT_EQ(ValuesOf(Import(OpenPbr(Input("coat_roughness", "float", "0.4"))))[0], plain);
+  for (const auto& [name, value] : std::vector<std::pair<const char*, const char*>>{{"specular_weight", "0.3"},
+                                                                                    {"specular_color", "0.2, 0.2, 0.2"},
+                                                                                    {"coat_weight", "1"},
+                                                                                    {"fuzz_weight", "1"},
+                                                                                    {"thin_film_weight", "0.5"},
+                                                                                    {"base_diffuse_roughness", "0.2"},
+                                                                                    {"geometry_opacity", "0.5"}}) {
+    EXPECT_THAT(ErrorOf(OpenPbr(Input(name, "float", value))), HasSubstr(std::string("the input '") + name)) << name;
+  }
+  EXPECT_THAT(ErrorOf(OpenPbr(Input("specular_roughnes", "float", "0.4"))),
+              HasSubstr("did you mean 'specular_roughness'"));
+}
+
+std::string Conductor(const std::string& inputs, const std::string& more = "") {
+  return "<materialx version=\"1.39\"><conductor_bsdf name=\"b\" type=\"BSDF\">" + inputs +
+         "</conductor_bsdf><surface name=\"s\" type=\"surfaceshader\"><input name=\"bsdf\" type=\"BSDF\" "
+         "nodename=\"b\"/></surface><surfacematerial name=\"m\" type=\"material\"><input name=\"surfaceshader\" "
+         "type=\"surfaceshader\" nodename=\"s\"/></surfacematerial>" +
+         more + "</materialx>";
+}
+
+TEST(MaterialXInputs, CountOrAreErrors) {
+  EXPECT_EQ(ErrorOf(Conductor(Input("thinfilm_thickness", "float", "0"))), "no error");
+  EXPECT_THAT(ErrorOf(Conductor(Input("thinfilm_thickness", "float", "500"))), HasSubstr("'thinfilm_thickness'"));
+  EXPECT_THAT(ErrorOf(Conductor(Input("retroreflective", "boolean", "true"))), HasSubstr("'retroreflective'"));
+  EXPECT_THAT(ErrorOf(Conductor(Input("distribution", "string", "beckmann"))), HasSubstr("only ggx"));
+  EXPECT_THAT(ErrorOf(Conductor("<input name=\"weight\" type=\"float\" nodename=\"x\"/>")), HasSubstr("'weight'"));
+  const std::string second = "<surfacematerial name=\"other\" type=\"material\"/>";
+  EXPECT_THAT(Import(Conductor("", second)).remarks, testing::Contains(HasSubstr("'other'")));
+  // A file of 2 KB whose tree has 2^20 leaves.
+  std::string bomb = "<materialx version=\"1.39\"><normal name=\"v0\" type=\"vector3\"/>";
+  for (int k = 1; k <= 15; ++k) {
+    const std::string n = std::to_string(k - 1);
+    bomb += "<add name=\"v" + std::to_string(k) + "\" type=\"vector3\"><input name=\"in1\" nodename=\"v" + n +
+            "\"/><input name=\"in2\" nodename=\"v" + n + "\"/></add>";
+  }
+  EXPECT_THAT(ErrorOf(bomb + Conductor("<input name=\"normal\" type=\"vector3\" nodename=\"v15\"/>").substr(26)),
+              HasSubstr("too large"));
+}
+
+TEST(PbrtParameters, CountOrAreErrors) {
+  const std::string lobe = "MakeNamedMaterial \"m\" \"string type\" \"conductor\" \"rgb reflectance\" [.5 .5 .5]\n";
+  EXPECT_THAT(ErrorOf(lobe + "\"float uroughnes\" .2"), HasSubstr("did you mean 'uroughness'?"));
+  EXPECT_THAT(ErrorOf(lobe + "\"float uroughnes\" .2"), HasSubstr("line 2"));
+  EXPECT_THAT(ErrorOf(lobe), HasSubstr("perfect mirror")) << "the default roughness";
+  EXPECT_THAT(ErrorOf(lobe + "\"texture roughness\" \"t\""), HasSubstr("is of the type 'texture'"));
+  EXPECT_THAT(ErrorOf(lobe + "\"float roughness\" .2 \"float roughness\" .3"), HasSubstr("given twice"));
+  EXPECT_THAT(ErrorOf(lobe + "\"float roughness\" .2 \"rgb eta\" [1 1 1]"), HasSubstr("not both"));
+  EXPECT_THAT(ErrorOf(lobe + "\"float roughness\" .2 \"bool remaproughness\" flase"),
+              HasSubstr("neither true nor false"));
+  const ImportedMaterial two =
+      Import("MakeNamedMaterial \"first\" \"string type\" \"diffuse\"\n" + lobe + "\"float roughness\" .2");
+  EXPECT_THAT(two.remarks, testing::Contains(HasSubstr("'first' of line 1 is left out")));
+}
+
+std::string MitsubaScene(const char* version, const std::string& properties, const std::string& before = "") {
+  return std::string("<scene version=\"") + version + "\">" + before +
+         "<bsdf type=\"roughconductor\" id=\"last\"><string name=\"distribution\" value=\"ggx\"/>" + properties +
+         "</bsdf></scene>";
+}
+
+TEST(MitsubaProperties, CountOrAreErrors) {
+  const std::string old_names = "<float name=\"alphaU\" value=\"0.3\"/><float name=\"alphaV\" value=\"0.3\"/>";
+  const std::string names = "<float name=\"alpha_u\" value=\"0.3\"/><float name=\"alpha_v\" value=\"0.3\"/>";
+  EXPECT_EQ(ValuesOf(Import(MitsubaScene("0.6.0", old_names))), ValuesOf(Import(MitsubaScene("3.0.0", names))));
+  EXPECT_NE(ValuesOf(Import(MitsubaScene("3.0.0", ""))), ValuesOf(Import(MitsubaScene("3.0.0", names))));
+  EXPECT_THAT(ErrorOf(MitsubaScene("3.0.0", old_names)), HasSubstr("name=\"alphaU\""));
+  EXPECT_THAT(ErrorOf(MitsubaScene("3.0.0", "<float name=\"alpha_u\" value=\"0.3\"/>")), HasSubstr("both alpha_u and"));
+  EXPECT_THAT(ErrorOf(MitsubaScene("3.0.0", "<float name=\"int_ior\" value=\"1.3\"/>")), HasSubstr("int_ior"));
+  const ImportedMaterial two = Import(MitsubaScene("3.0.0", names, "<bsdf type=\"diffuse\" id=\"first\"/>"));
+  EXPECT_THAT(two.remarks, testing::Contains(HasSubstr("'first' of line 1 is left out: the last one, 'last'")));
+}
+
+TEST(GltfMembers, CountOrAreErrors) {
+  const auto gltf = [](const std::string& material) {
+    return "{\"asset\": {\"version\": \"2.0\"}, \"materials\": [" + material + "]}";
+  };
+  // Every default of the format: a white metal of roughness 1.
+  const ImportedMaterial defaults = Import(gltf("{}"));
+  EXPECT_EQ(ValuesOf(defaults), ValuesOf(Import(gltf("{\"pbrMetallicRoughness\": {\"roughnessFactor\": 1}}"))));
+  EXPECT_THAT(ErrorOf(gltf("{\"extensions\": {\"KHR_materials_pbrSpecularGlossiness\": {}}}")),
+              HasSubstr("'KHR_materials_pbrSpecularGlossiness'"));
+  for (const char* extension : {"KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_transmission"}) {
+    EXPECT_THAT(ErrorOf(gltf(std::string("{\"extensions\": {\"") + extension + "\": {}}}")), HasSubstr(extension));
+  }
+  EXPECT_THAT(ErrorOf(gltf("{\"extensions\": {\"KHR_materials_anisotropy\": {\"anisotropyTexture\": {}}}}")),
+              HasSubstr("has textures ('anisotropyTexture')"));
+  EXPECT_THAT(ErrorOf(gltf("{\"occlusionTexture\": {}}")), HasSubstr("has textures ('occlusionTexture')"));
+  EXPECT_THAT(ErrorOf(gltf("{\"alphaMode\": \"BLEND\"}")), HasSubstr("not opaque"));
+  EXPECT_THAT(ErrorOf(gltf("{\"emissiveFactor\": [1, 0, 0]}")), HasSubstr("emits"));
+  EXPECT_THAT(ErrorOf(gltf("{\"pbrMetallicRoughness\": {\"roughness\": 0.2}}")), HasSubstr("'roughness'"));
+  EXPECT_THAT(Import(gltf("{\"name\": \"a\"}, {\"name\": \"b\"}")).remarks,
+              testing::Contains("the material 1 ('b') is left out: the first one, 'a', is taken"));
+}
+
+// A table without reciprocity: each half of the turn of phi_d has its own value.
+TEST(MerlLookup, TakesTablesOfAWholeTurn) {
+  constexpr std::size_t kCells = 90 * 90 * 360;
+  std::string bytes(12 + 3 * 8 * kCells, '\0');
+  const std::int32_t dims[3] = {90, 90, 360};
+  std::memcpy(bytes.data(), dims, sizeof(dims));
+  for (std::size_t cell = 0; cell < 3 * kCells; ++cell) {
+    const double value = cell % 360 < 180 ? 150 : 300;
+    std::memcpy(bytes.data() + 12 + 8 * cell, &value, 8);
+  }
+  const TemporaryFile file(bytes);
+  const ImportedMaterial table = ImportMaterial(file.path());
+  EXPECT_EQ(table.format, "merl");
+  double there[3] = {}, back[3] = {};
+  Vec3 wi, wo;
+  FromHalfDifference({0.3, 0, 0.4, 1.0}, &wi, &wo);
+  table.brdf(wi, wo, there);
+  table.brdf(wo, wi, back);
+  EXPECT_NEAR(there[0], 0.1, 1e-12);
+  EXPECT_NEAR(back[0], 0.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace lobefit
