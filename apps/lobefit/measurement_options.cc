@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
 #include "lobefit/io/series.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/measurement/spectrum.h"
@@ -21,7 +22,8 @@ void MeasurementOptions::AddTo(CLI::App* app) {
   const std::vector<ReadOptionEntry>& table = ReadOptionTable();
   words_.resize(table.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
-    app->add_option(std::string("--") + table[i].name, words_[i], table[i].help)
+    const std::string formats = table[i].formats.empty() ? "all formats" : Join(table[i].formats);
+    app->add_option(std::string("--") + table[i].name, words_[i], std::string(table[i].help) + " (" + formats + ")")
         ->option_text(table[i].allowed)
         ->group("What the file leaves open");
   }
@@ -54,6 +56,9 @@ Measurement MeasurementOptions::Load(const std::vector<std::string>& files) cons
     if (!words_[i].empty()) ReadOptionTable()[i].set(&options, words_[i]);
   }
   Measurement measurement = ReadSeries(files, options);
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    if (!words_[i].empty()) CheckOptionOf(ReadOptionTable()[i], measurement.format, files.front());
+  }
   SelectDirections(&measurement);
   return measurement;
 }

@@ -37,9 +37,12 @@ struct ReadOptionEntry {
   const char* name;     // "merl-cell"
   const char* allowed;  // "centre|edge"
   const char* help;
+  std::vector<std::string> formats;  // that look at it; empty: all
   void (*set)(ReadOptions* options, const std::string& word);
 };
 const std::vector<ReadOptionEntry>& ReadOptionTable();
+// Throws UsageError where a file of `format` does not look at the option.
+void CheckOptionOf(const ReadOptionEntry& option, const std::string& format, const std::string& file);
 
 // f_r / value. A direction at or below the horizon, which is set aside anyway, gives 1 for its cosine.
 double BrdfFactor(ValueKind kind, double cos_theta_i, double cos_theta_o);
