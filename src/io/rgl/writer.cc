@@ -24,8 +24,8 @@ constexpr double kLeastFloor = 0.03, kMostFloor = 0.25, kUnknownFloor = 0.1;
 constexpr double kCosineShare = 0.3;
 constexpr double kSteepestViewer = 89.2 * kPi / 180;
 // Viewers stand closer towards the horizon, where lobes change most from one to the next: this share of their distance
-// is even, the rest falls linearly to 0.
-constexpr double kEvenShare = 0.35;
+// is even, the rest falls linearly to 0. An isotropic file can afford more of them.
+constexpr double kEvenShare = 0.35, kEvenShareOfMany = 0.2;
 
 struct Sizes {
   std::size_t phi, theta, density, table, channels;
@@ -70,8 +70,8 @@ class RglTableBuilder {
         phi.push_back(static_cast<float>((2 * NodeAt(i, sizes_.phi) - 1) * kPi));
     }
     for (std::size_t i = 0; i < sizes_.theta; ++i) {
-      const double x = NodeAt(i, sizes_.theta);
-      theta.push_back(static_cast<float>((kEvenShare * x + (1 - kEvenShare) * x * (2 - x)) * kSteepestViewer));
+      const double x = NodeAt(i, sizes_.theta), even = options_.isotropic ? kEvenShareOfMany : kEvenShare;
+      theta.push_back(static_cast<float>((even * x + (1 - even) * x * (2 - x)) * kSteepestViewer));
     }
   }
 
@@ -271,7 +271,7 @@ void WriteRgl(const BrdfFunction& brdf, const Channels& channels, const RglWrite
   const Sizes sizes = {options.isotropic      ? 1
                        : options.azimuths > 0 ? options.azimuths + 1
                                               : 41,
-                       options.polar_angles > 0 ? options.polar_angles : (options.isotropic ? 28U : 24U),
+                       options.polar_angles > 0 ? options.polar_angles : (options.isotropic ? 40U : 24U),
                        options.density_size > 0 ? options.density_size : (options.isotropic ? 128U : 64U),
                        options.table_size > 0 ? options.table_size : (options.isotropic ? 64U : 36U), count};
   const BrdfFunction source = grey ? Repeated(brdf, count) : brdf;

@@ -21,7 +21,7 @@ enum class RglKind {
 struct RglWriteOptions {
   RglKind kind = RglKind::kAuto;
   bool isotropic = false;  // one azimuth of the viewer; the caller knows that f_r does not depend on it
-  // Grid of viewers; 0 stands for 40 azimuths (and a copy of the first) x 24 polar angles, or 1 x 28 where isotropic.
+  // Grid of viewers; 0 stands for 40 azimuths (and a copy of the first) x 24 polar angles, or 1 x 40 where isotropic.
   std::size_t azimuths = 0, polar_angles = 0;
   // Sides of the density's and of the values' grids; 0 stands for 64 and 36, or 128 and 64 where isotropic.
   std::size_t density_size = 0, table_size = 0;
