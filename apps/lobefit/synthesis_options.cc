@@ -49,6 +49,11 @@ void SynthesisOptions::AddTo(CLI::App* app) {
          "terms with commas between, as in multiplicative=0.05,drift=0.03; a number alone is multiplicative: " +
              Join(terms, ", "))
       ->group(what);
+  app->add_option("--mean", mean_,
+                  "what the discs of source and detector (--noise aperture=2,source=1) average: flux, f_r cos_theta_i "
+                  "cos_theta_o over the means of the cosines (default), or plain, f_r")
+      ->check(CLI::IsMember({"flux", "plain"}))
+      ->group(what);
   app->add_option("--channels", channels_, "names of the channels of a recipe, with commas between")->group(what);
   app->add_option("--seed", seed_, "seed of the noise (default 1)")->group(what);
 }
@@ -72,8 +77,9 @@ LayoutRequest SynthesisOptions::Layout() const {
 }
 
 Noise SynthesisOptions::ChosenNoise() const {
-  if (const std::optional<double> alone = ParseDouble(noise_)) return ParseNoise("multiplicative=" + noise_);
-  return ParseNoise(noise_);
+  Noise noise = ParseNoise(ParseDouble(noise_) ? "multiplicative=" + noise_ : noise_);
+  if (!mean_.empty()) noise.plain_mean = mean_ == "plain";
+  return noise;
 }
 
 }  // namespace lobefit

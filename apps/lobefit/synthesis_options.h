@@ -25,7 +25,7 @@ class SynthesisOptions {
 
  private:
   std::string channels_ = "R,G,B", theta_i_ = "5,15,25,30,35,40,45,50,55,60,65,70", phi_i_ = "0";
-  std::string layout_ = "goniometer", noise_;
+  std::string layout_ = "goniometer", noise_, mean_;
   double step_ = 10, theta_max_ = 80;
   std::size_t samples_ = 256;
   bool in_plane_ = false;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lobefit/math/directions.h"
+#include "lobefit/synthesis/instrument.h"
 
 namespace lobefit {
 namespace {
@@ -63,7 +64,9 @@ Measurement TrueMeasurement(const DirectionList& directions, const Channels& cha
   BrdfFunction seen = brdf;
   if (noise.misalignment_x != 0 || noise.misalignment_y != 0)
     seen = WithMisalignment(seen, noise.misalignment_x, noise.misalignment_y, channels.size());
-  if (noise.aperture > 0) seen = WithAperture(seen, noise.aperture, channels.size(), lobe_width);
+  seen =
+      WithAperture(seen, {noise.source, noise.aperture, noise.plain_mean ? ApertureMean::kPlain : ApertureMean::kFlux},
+                   channels.size(), lobe_width);
   MeasurementBuilder builder(channels);
   std::vector<double> values(channels.size());
   for (std::size_t i = 0; i < directions.size(); ++i) {

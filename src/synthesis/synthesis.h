@@ -45,8 +45,10 @@ struct Noise {
   bool rectified = false;  // only the magnitude is kept
   double quantisation = 0;  // step to whose multiples values are rounded, 1/sr
   double holes = 0;         // share of samples that were not measured
-  // Not random: the detector averages over a disc of this half angle, radians.
-  double aperture = 0;
+  // Not random: detector and source average over discs of these half angles, radians, the flux over the mean cosines
+  // or, with plain_mean, f_r itself.
+  double aperture = 0, source = 0;
+  bool plain_mean = false;
   // Not random: the sample is turned about x, then about y, radians; the instrument reports directions as if it were
   // not.
   double misalignment_x = 0, misalignment_y = 0;
@@ -72,16 +74,8 @@ Noise ParseNoise(const std::string& text);
 // The terms that are not zero, in the same words.
 std::string ToText(const Noise& noise);
 
-// f_r of `brdf` averaged over the solid angle of a disc of half angle `half_angle` radians about wo, by a product rule
-// that is refined where the disc is wider than `lobe_width` (radians, about the smallest alpha): to 1e-4 of the value.
-// The part of the disc below the horizon does not count.
-BrdfFunction WithAperture(const BrdfFunction& brdf, double half_angle, std::size_t channels, double lobe_width = 1e9);
-// f_r of a sample that is turned about x, then y: the directions that the instrument names are not those of the
-// sample's frame. Zero where the turned direction is at or below the sample's horizon.
-BrdfFunction WithMisalignment(const BrdfFunction& brdf, double about_x, double about_y, std::size_t channels);
-
 // f_r of `brdf` at the directions, with `noise` drawn from `seed`. Directions at or below the horizon are set aside,
-// holes too. `lobe_width` as for WithAperture.
+// holes too. `lobe_width` as for WithAperture (instrument.h).
 Measurement Synthesise(const DirectionList& directions, const Channels& channels, const BrdfFunction& brdf,
                        const Noise& noise, std::uint64_t seed, double lobe_width = 1e9);
 

@@ -59,7 +59,9 @@ const std::vector<NoiseTerm>& NoiseTerms() {
       {"rectified", "flag", nullptr, &Noise::rectified, 1, false, "only the magnitude of a value is kept"},
       {"quantisation", "1/sr", &Noise::quantisation, nullptr, 1e6, false, "step of the values"},
       {"holes", "1", &Noise::holes, nullptr, 0.99, false, "share of samples that are missing"},
-      {"aperture", "deg", &Noise::aperture, nullptr, 45, false, "half angle of the detector's disc"},
+      {"aperture", "deg", &Noise::aperture, nullptr, 30, false, "half angle of the detector's disc"},
+      {"source", "deg", &Noise::source, nullptr, 30, false, "half angle of the source's disc"},
+      {"plain-mean", "flag", nullptr, &Noise::plain_mean, 1, false, "discs average f_r, not the flux"},
       {"misalignment-x", "deg", &Noise::misalignment_x, nullptr, 45, true, "turn of the sample about x"},
       {"misalignment-y", "deg", &Noise::misalignment_y, nullptr, 45, true, "turn of the sample about y"},
   };
@@ -109,57 +111,6 @@ std::string ToText(const Noise& noise) {
     }
   }
   return words.empty() ? "none" : Join(words, ",");
-}
-
-BrdfFunction WithAperture(const BrdfFunction& brdf, double half_angle, std::size_t channels, double lobe_width) {
-  constexpr int kNodes = 4;
-  constexpr double kNode[kNodes] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
-  constexpr double kWeight[kNodes] = {0.17392742256872692, 0.3260725774312731, 0.3260725774312731, 0.17392742256872692};
-  constexpr int kMostPanels = 32;
-  // Rings at Gauss-Legendre nodes of the radius, sectors at even steps; both finer for lobes narrower than the disc.
-  const int panels = std::clamp(static_cast<int>(std::ceil(half_angle / lobe_width)), 1, kMostPanels);
-  const int sectors = 12 * panels;
-  struct Offset {
-    Vec3 direction;
-    double weight;
-  };
-  std::vector<Offset> offsets;
-  for (int panel = 0; panel < panels; ++panel) {
-    for (int k = 0; k < kNodes; ++k) {
-      const double theta = half_angle * (panel + kNode[k]) / panels;
-      for (int s = 0; s < sectors; ++s) {
-        const double phi = 2 * kPi * (s + (k % 2) * 0.5) / sectors;
-        offsets.push_back({FromSpherical(theta, phi), kWeight[k] * std::sin(theta)});
-      }
-    }
-  }
-  return [=](const Vec3& wi, const Vec3& wo, double* values) {
-    const double tilt = PolarAngle(wo), azimuth = Azimuth(wo);
-    std::vector<double> one(channels);
-    std::fill(values, values + channels, 0.0);
-    double total = 0;
-    for (const Offset& offset : offsets) {
-      const Vec3 w = RotateZ(RotateY(offset.direction, tilt), azimuth);
-      if (w.z <= 0) continue;
-      brdf(wi, w, one.data());
-      total += offset.weight;
-      for (std::size_t c = 0; c < channels; ++c) values[c] += offset.weight * one[c];
-    }
-    for (std::size_t c = 0; c < channels && total > 0; ++c) values[c] /= total;
-  };
-}
-
-BrdfFunction WithMisalignment(const BrdfFunction& brdf, double about_x, double about_y, std::size_t channels) {
-  return [=](const Vec3& wi, const Vec3& wo, double* values) {
-    // The sample turned one way is the directions turned the other way in its frame.
-    const Vec3 sample_wi = RotateX(RotateY(wi, -about_y), -about_x),
-               sample_wo = RotateX(RotateY(wo, -about_y), -about_x);
-    if (sample_wi.z > 0 && sample_wo.z > 0) {
-      brdf(sample_wi, sample_wo, values);
-    } else {
-      std::fill(values, values + channels, 0.0);
-    }
-  };
 }
 
 void AddNoise(const Noise& noise, std::uint64_t seed, Measurement* measurement) {

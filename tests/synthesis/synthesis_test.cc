@@ -9,6 +9,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/math/directions.h"
+#include "lobefit/synthesis/instrument.h"
 #include "lobefit/synthesis/random.h"
 
 namespace lobefit {
@@ -63,10 +64,10 @@ TEST(RandomNumbers, StreamsOfOneSeedDifferAndMomentsAreRight) {
 }
 
 TEST(Noise, WordsReadBack) {
-  for (const std::string text :
-       {"none", "multiplicative=0.05",
-        "multiplicative=0.05,additive=0.001,drift=0.03,poisson=0.0001,outliers=0.01,"
-        "rectified,quantisation=0.001,holes=0.1,aperture=1.5,misalignment-x=-0.5,misalignment-y=2"}) {
+  for (const std::string text : {"none", "multiplicative=0.05",
+                                 "multiplicative=0.05,additive=0.001,drift=0.03,poisson=0.0001,outliers=0.01,"
+                                 "rectified,quantisation=0.001,holes=0.1,aperture=1.5,source=0.5,plain-mean,"
+                                 "misalignment-x=-0.5,misalignment-y=2"}) {
     EXPECT_EQ(ToText(ParseNoise(text)), text);
   }
   EXPECT_EQ(ParseNoise(""), Noise{});
@@ -152,19 +153,36 @@ TEST(Noise, SameSeedSameNumbersOtherSeedOthers) {
   EXPECT_NE(Make("multiplicative=0.1", 3).samples.values, Make("multiplicative=0.1", 4).samples.values);
 }
 
+constexpr Aperture Plain(double half_angle) { return {0, half_angle, ApertureMean::kPlain}; }
+
 TEST(Aperture, AveragesOverTheDiscsSolidAngle) {
   // The mean of cos(theta_o) over a cap of half angle a about wo is cos(theta_o) (1 + cos a) / 2, of its square
   // ((1 + c + c^2) / 3) cos^2 + (2 - c - c^2) / 6 sin^2 with c = cos a: exact integrals over the sphere.
   const double a = 0.3, c = std::cos(a);
-  const BrdfFunction first = WithAperture([](const Vec3&, const Vec3& wo, double* v) { *v = wo.z; }, a, 1);
-  const BrdfFunction second = WithAperture([](const Vec3&, const Vec3& wo, double* v) { *v = wo.z * wo.z; }, a, 1);
+  const BrdfFunction one = [](const Vec3&, const Vec3& wo, double* v) { *v = wo.z; };
+  const BrdfFunction first = WithAperture(one, Plain(a), 1), flux = WithAperture(one, {0, a}, 1);
+  const BrdfFunction second =
+      WithAperture([](const Vec3&, const Vec3& wo, double* v) { *v = wo.z * wo.z; }, Plain(a), 1);
   for (const double theta : {0.0, 0.4, 1.0}) {
     const Vec3 wo = FromSpherical(theta, 0.7);
+    const double square = wo.z * wo.z * (1 + c + c * c) / 3 + (1 - wo.z * wo.z) * (2 - c - c * c) / 6;
     double value = 0;
     first({0, 0, 1}, wo, &value);
-    EXPECT_NEAR(value, wo.z * (1 + c) / 2, 1e-7);
+    EXPECT_NEAR(value, wo.z * (1 + c) / 2, 1e-12);
     second({0, 0, 1}, wo, &value);
-    EXPECT_NEAR(value, wo.z * wo.z * (1 + c + c * c) / 3 + (1 - wo.z * wo.z) * (2 - c - c * c) / 6, 1e-7);
+    EXPECT_NEAR(value, square, 1e-12);
+    // < cos^2 > / < cos >.
+    flux({0, 0, 1}, wo, &value);
+    EXPECT_NEAR(value, square / (wo.z * (1 + c) / 2), 1e-12);
+  }
+}
+
+TEST(Aperture, LambertIsTheSameThroughAnyAperture) {
+  const BrdfFunction lambert = [](const Vec3&, const Vec3&, double* v) { *v = 0.2; };
+  for (const ApertureMean mean : {ApertureMean::kFlux, ApertureMean::kPlain}) {
+    double value = 0;
+    WithAperture(lambert, {0.02, 0.05, mean}, 1)(FromSpherical(1, 0), FromSpherical(0.8, 2), &value);
+    EXPECT_NEAR(value, 0.2, 1e-13);
   }
 }
 
@@ -176,11 +194,29 @@ TEST(Aperture, ResolvesLobesMuchNarrowerThanTheDisc) {
         const double sine2 = wo.x * wo.x + wo.y * wo.y;
         *v = std::exp(-sharpness * sine2 / (1 + wo.z));
       },
-      a, 1, width);
+      Plain(a), 1, width);
   double value = 0;
   seen({0, 0, 1}, {0, 0, 1}, &value);
   const double height = 1 - std::cos(a);
   EXPECT_NEAR(value, (1 - std::exp(-sharpness * height)) / (sharpness * height), 1e-4 * value);
+}
+
+// Both discs: the source swept by the outer mean of the detector's.
+TEST(Aperture, BothDiscsAreOneAfterTheOther) {
+  const auto lobe = [](const Vec3& wi, const Vec3& wo, double* v) {
+    const Vec3 h = Normalized(wi + wo);
+    *v = std::exp(-(h.x * h.x + h.y * h.y) / 0.02);
+  };
+  const BrdfFunction detector = WithAperture(lobe, Plain(0.04), 1, 0.1);
+  // The source's disc about wi is the detector's of the function with its directions exchanged.
+  const BrdfFunction exchanged = [&](const Vec3& wi, const Vec3& wo, double* v) { detector(wo, wi, v); };
+  const BrdfFunction one_by_one = WithAperture(exchanged, Plain(0.02), 1, 0.1);
+  const BrdfFunction both = WithAperture(lobe, {0.02, 0.04, ApertureMean::kPlain}, 1, 0.1);
+  const Vec3 wi = FromSpherical(0.5, 0), wo = FromSpherical(0.6, 2.9);
+  double a = 0, b = 0;
+  one_by_one(wo, wi, &a);
+  both(wi, wo, &b);
+  EXPECT_NEAR(a, b, 1e-7 * a);
 }
 
 TEST(Misalignment, TurnsTheSampleAgainstTheInstrument) {
