@@ -174,7 +174,9 @@ bool IsGltf(std::string_view bytes) {
 
 ImportedMaterial ReadGltf(const InputFile& file) {
   const GltfReader reader(file);
-  return {"gltf", {{"R", "G", "B"}, {}}, SurfaceBrdf(GltfSurface(reader.Read())), reader.Remarks()};
+  // Before the braces: where a member of an aggregate throws, g++ 12 ends with a crash.
+  const BrdfFunction brdf = SurfaceBrdf(GltfSurface(reader.Read()));
+  return {"gltf", {{"R", "G", "B"}, {}}, brdf, reader.Remarks()};
 }
 
 }  // namespace lobefit

@@ -67,7 +67,8 @@ WrittenFiles WriteGltf(const FittedBrdf& fit, const WriteContext& context) {
   const std::filesystem::path path = context.File(".gltf");
   WriteFileAtomically(path, gltf.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   const MappedFile bytes(path);
-  WrittenFiles written = {{path}, InChannelsOf(fit, ReadGltf({path, bytes.bytes()}).brdf), false, {}};
+  const ImportedMaterial back = ReadGltf({path, bytes.bytes()});
+  WrittenFiles written = {{path}, InChannelsOf(fit, back.brdf), false, {}};
   if (material.roughness.anisotropy > 0) {
     written.notes.emplace_back(
         "a viewer without KHR_materials_anisotropy (Blender before 4.0) takes the narrow width for both: the highlight "

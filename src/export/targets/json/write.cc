@@ -18,13 +18,15 @@ ImportedMaterial ReadDocument(const InputFile& file) {
   const Material material = ReadMaterial(file.path);
   const Channels channels = {material.channels, material.wavelengths_nm};
   if (material.sel) return {"json", channels, SelBrdf(*material.sel), {}};
-  return {"json", channels, FittedBrdf(material).function(), {}};
+  const BrdfFunction brdf = FittedBrdf(material).function();
+  return {"json", channels, brdf, {}};
 }
 
 WrittenFiles WriteJson(const FittedBrdf& fit, const WriteContext& context) {
   const std::filesystem::path path = context.File(".material.json");
   WriteMaterial(fit.material(), path);
-  return {{path}, ReadDocument({path, {}}).brdf, true, {}};
+  const ImportedMaterial back = ReadDocument({path, {}});
+  return {{path}, back.brdf, true, {}};
 }
 
 }  // namespace

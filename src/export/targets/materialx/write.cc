@@ -78,7 +78,8 @@ WrittenFiles WriteMaterialX(const FittedBrdf& fit, const WriteContext& context) 
   const std::filesystem::path path = context.File(".mtlx");
   WriteFileAtomically(path, MaterialXDocument(context, nodes));
   const MappedFile bytes(path);
-  return {{path}, InChannelsOf(fit, ReadMaterialX({path, bytes.bytes()}).brdf), false, {}};
+  const ImportedMaterial back = ReadMaterialX({path, bytes.bytes()});
+  return {{path}, InChannelsOf(fit, back.brdf), false, {}};
 }
 
 }  // namespace

@@ -18,10 +18,8 @@ WrittenFiles WriteMerlTable(const FittedBrdf& fit, const WriteContext& context) 
   const std::filesystem::path path = context.File(".binary");
   WriteMerl(fit.function(), fit.channels(), {}, path);
   const MappedFile bytes(path);
-  return {{path},
-          InChannelsOf(fit, ReadMerlLookup({path, bytes.bytes()}).brdf),
-          false,
-          {"the error is that of a reader that takes the nearest cell"}};
+  const ImportedMaterial back = ReadMerlLookup({path, bytes.bytes()});
+  return {{path}, InChannelsOf(fit, back.brdf), false, {"the error is that of a reader that takes the nearest cell"}};
 }
 
 }  // namespace

@@ -52,7 +52,8 @@ WrittenFiles WriteOpenPbr(const FittedBrdf& fit, const WriteContext& context) {
   const std::filesystem::path path = context.File(".openpbr.mtlx");
   WriteFileAtomically(path, MaterialXDocument(context, nodes));
   const MappedFile bytes(path);
-  return {{path}, InChannelsOf(fit, ReadMaterialX({path, bytes.bytes()}).brdf), false, {}};
+  const ImportedMaterial back = ReadMaterialX({path, bytes.bytes()});
+  return {{path}, InChannelsOf(fit, back.brdf), false, {}};
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ std::vector<Carried> CarriesSel(const Material& material) {
 WrittenFiles WriteSelJson(const Material& material, const WriteContext& context) {
   const std::filesystem::path path = context.File(".material.json");
   WriteMaterial(material, path);
-  return {{path}, SelBrdf(*ReadMaterial(path).sel), true, {}};
+  const Material back = ReadMaterial(path);
+  return {{path}, SelBrdf(*back.sel), true, {}};
 }
 
 WrittenFiles WriteSelGlsl(const Material& material, const WriteContext& context) {
