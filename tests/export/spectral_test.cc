@@ -10,7 +10,6 @@
 #include "lobefit/export/export.h"
 #include "lobefit/export/import.h"
 #include "lobefit/export/targets.h"
-#include "lobefit/measurement/spectrum.h"
 #include "lobefit/renderer/rgb_fit.h"
 
 namespace lobefit {
@@ -63,7 +62,7 @@ TEST_F(SpectralExport, PbrtAndMitsubaHoldSpectra) {
 TEST_F(SpectralExport, OtherTextsGetTheFitsOwnRgb) {
   const Material material = Spectral();
   const FittedBrdf fit(material);
-  const ChannelMap map = MakeChannelMap("rgb", fit.channels());
+  const ChannelMap map = RgbMapOf(fit);
   // Schlick's term and the diffuse part are linear, so that the R, G, B of the parameters are those of f_r.
   const FittedBrdf rgb(RgbFit(fit, RgbMapOf(fit)));
   const BrdfFunction wanted = Apply(map, fit.function(), 4);
