@@ -36,7 +36,7 @@ constexpr std::size_t kMostSamples = 200000;
 
 class Checks {
  public:
-  explicit Checks(const Measurement& measurement) : measurement_(measurement), samples_(measurement.samples) {
+  explicit Checks(const Measurement& measurement) : samples_(measurement.samples) {
     const std::size_t stride = std::max<std::size_t>(1, samples_.size() / kMostSamples);
     for (std::size_t i = 0; i < samples_.size(); i += stride) chosen_.push_back(i);
   }
@@ -240,7 +240,6 @@ class Checks {
     }
   }
 
-  const Measurement& measurement_;
   const Samples& samples_;
   std::vector<std::size_t> chosen_;
   std::vector<Incidence> incidences_;

@@ -15,7 +15,7 @@ double FresnelSchlick(double c, double f0, double* dF_dc, double* dF_df0) {
 
 namespace {
 
-constexpr double kEdge = 1.0 / 7.0;                  // cosine at which the tint is said
+// w = 1/7 is the cosine at which the tint is said.
 constexpr double kEdgeScale = 823543.0 / 46656.0;    // 1 / (w (1 - w)^6) = 7^7 / 6^6
 constexpr double kOneMinusEdge5 = 7776.0 / 16807.0;  // (1 - w)^5
 

@@ -88,7 +88,6 @@ bool IsPerSteradian(std::string_view unit) {
 // not taken: some mean by "x 1000" that the numbers are to be multiplied, some that they have been.
 std::optional<double> Factor(std::string_view unit, std::string_view* rest) {
   double base = 0;
-  std::string_view exponent;
   if (unit.starts_with("10^") || unit.starts_with("10**")) {
     unit.remove_prefix(unit[2] == '^' ? 3 : 4);
     base = 10;

@@ -41,7 +41,9 @@ TEST(EstimateNoise, FindsFloorAndRelativeNoiseAgainWhateverTheGainOfAnIncidence)
       const std::optional<NoiseModel> found = EstimateNoise(measurement.samples, incidences, truth);
       ASSERT_TRUE(found);
       EXPECT_NEAR(found->floor / noise.floor, 1, noise.floor < 0.01 ? 0.5 : 0.2) << noise.floor << " " << seed;
-      if (noise.relative > 0.02) EXPECT_NEAR(found->relative / noise.relative, 1, 0.3) << noise.floor << " " << seed;
+      if (noise.relative > 0.02) {
+        EXPECT_NEAR(found->relative / noise.relative, 1, 0.3) << noise.floor << " " << seed;
+      }
     }
   }
 }
