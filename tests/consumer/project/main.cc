@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <lobefit/core/reflectance.h>
+#include <lobefit/core/brdf/brdf.h>
 #include <lobefit/fit/fit.h>
 #include <lobefit/measurement/synthesis.h>
 
