@@ -233,8 +233,11 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   // magnitudes of noise about zero were kept, no metric helps.
   const bool readings = samples.solid_angle.empty() && spread.size() == 0 && !FindRectifiedNoise(*measurement);
   if (readings || needs_noise) {
-    const std::optional<NoiseBias> bias = PredictNoiseBias(found->problem, found->layout, found->best().u,
-                                                           found->uncertainty.covariance, samples, incidences);
+    const auto predict = [&] {
+      return PredictNoiseBias(found->problem, found->layout, found->best().u, found->uncertainty.covariance, samples,
+                              incidences);
+    };
+    std::optional<NoiseBias> bias = predict();
     const bool may = needs_noise || (!recipe.metric_given && recipe.metric == Recipe().metric);
     if (needs_noise && !bias) {
       throw InputError(
@@ -243,10 +246,20 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
           "from the model; use --metric log or cube-root");
     }
     if (bias && may && (needs_noise || WantsAsinh(*bias))) {
-      if (!needs_noise) remarks.push_back(ToSwitchRemark(*bias, recipe.metric));
+      const Metric before = recipe.metric;
       recipe.metric = Metric::kAsinh;
-      recipe.noise = NoiseForAsinh(bias->noise);
-      found.emplace(recipe, *measurement, samples, incidences, options, &pool);
+      // A fit that the noise has biased leaves residuals that look like noise of the value: that of the new fit tells better.
+      constexpr int kMostRounds = 4;
+      for (int round = 0; round < kMostRounds; ++round) {
+        recipe.noise = NoiseForAsinh(bias->noise);
+        found.emplace(recipe, *measurement, samples, incidences, options, &pool);
+        const std::optional<NoiseBias> again = predict();
+        if (!again) break;
+        const NoiseModel next = NoiseForAsinh(again->noise);
+        if (IsNear(next, recipe.noise)) break;
+        bias->noise = again->noise;
+      }
+      if (!needs_noise) remarks.push_back(ToSwitchRemark(*bias, before));
     } else if (bias && recipe.metric_given) {
       const std::string remark = ToBiasRemark(*bias, recipe.metric);
       if (!remark.empty()) remarks.push_back(remark);

@@ -49,13 +49,33 @@ void AddShift(const Problem& problem, const Layout& layout, const KernelModel& k
   }
 }
 
+// The bias of the reported parameters, of which the largest is kept.
+void NameLargest(const Layout& layout, const std::vector<double>& u, const Eigen::VectorXd& moved,
+                 const Eigen::MatrixXd& covariance, NoiseBias* bias) {
+  const Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
+  const Eigen::MatrixXd known = covariance.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
+  Eigen::Index row = 0;
+  for (const Parameter& parameter : Parameters(layout.recipe().model)) {
+    for (std::size_t c = 0; c < (parameter.per_channel ? layout.channels() : 1); ++c, ++row) {
+      const double variance = (jacobian.row(row) * known).dot(jacobian.row(row));
+      const double errors = std::fabs(jacobian.row(row).dot(moved)) / std::sqrt(variance);
+      if (!std::isfinite(errors) || !(errors > bias->errors)) continue;
+      bias->errors = errors;
+      bias->parameter = parameter.json_name;
+    }
+  }
+}
+
 std::string NoiseInWords(const NoiseModel& noise) {
+  // Noise of the value that hides below the floor is not determined.
+  if (noise.relative < kLeastRelative)
+    return fmt::format("noise floor {:.2g}/sr, noise below {:g} % of the value", noise.floor, 100 * kLeastRelative);
   return fmt::format("noise floor {:.2g}/sr, noise {:.2g} % of the value", noise.floor, 100 * noise.relative);
 }
 
 std::string BiasInWords(const NoiseBias& bias, const char* metric) {
   if (!(bias.errors > kMostErrors)) return fmt::format("{} would be biased by such noise", metric);
-  return fmt::format("{} would be biased by such noise ({} by about {:.2g} standard errors)", metric, bias.coordinate,
+  return fmt::format("{} would be biased by such noise ({} by about {:.2g} standard errors)", metric, bias.parameter,
                      bias.errors);
 }
 
@@ -97,12 +117,7 @@ std::optional<NoiseBias> PredictNoiseBias(const Problem& problem, const Layout& 
   const Eigen::VectorXd moved =
       scale.asDiagonal() *
       (eigen.vectors * (inverse.asDiagonal() * (eigen.vectors.transpose() * (scale.asDiagonal() * shift))));
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double errors = std::fabs(moved(k)) / std::sqrt(covariance(k, k));
-    if (!(errors > bias.errors) || !std::isfinite(errors)) continue;
-    bias.errors = errors;
-    bias.coordinate = layout.coordinates()[static_cast<std::size_t>(k)].name;
-  }
+  NameLargest(layout, u, moved, covariance, &bias);
   return bias;
 }
 
@@ -113,6 +128,11 @@ bool WantsAsinh(const NoiseBias& bias) {
 
 NoiseModel NoiseForAsinh(const NoiseModel& estimated) {
   return {estimated.floor, std::max(estimated.relative, kLeastRelative)};
+}
+
+bool IsNear(const NoiseModel& a, const NoiseModel& b) {
+  const auto near = [](double x, double y) { return std::fabs(x - y) < 0.1 * std::max(x, y); };
+  return near(a.floor, b.floor) && near(a.relative, b.relative);
 }
 
 std::string ToSwitchRemark(const NoiseBias& bias, Metric before) {
@@ -135,7 +155,7 @@ std::string ToBiasRemark(const NoiseBias& bias, Metric metric) {
   return fmt::format(
       "metric {} is biased by the noise of these values ({}): {} by about {:.2g} standard errors; "
       "--metric asinh is not",
-      RowOf(metric).name, NoiseInWords(bias.noise), bias.coordinate, bias.errors);
+      RowOf(metric).name, NoiseInWords(bias.noise), bias.parameter, bias.errors);
 }
 
 }  // namespace lobefit

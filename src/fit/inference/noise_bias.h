@@ -15,10 +15,10 @@ namespace lobefit {
 
 struct NoiseBias {
   NoiseModel noise;
-  double negative = 0;     // share of the readings below 0
-  double near_floor = 0;   // share of the model's values below 3 floors
-  double errors = 0;       // largest predicted bias of a coordinate, in its standard errors
-  std::string coordinate;  // which one
+  double negative = 0;    // share of the readings below 0
+  double near_floor = 0;  // share of the model's values below 3 floors
+  double errors = 0;      // largest predicted bias of a reported parameter, in its standard errors
+  std::string parameter;  // which one
 };
 
 // To first order noise of standard deviation s moves the mean of a transformed reading by T''(v) s^2 / 2, and the
@@ -29,13 +29,15 @@ std::optional<NoiseBias> PredictNoiseBias(const Problem& problem, const Layout& 
                                           const Incidences& incidences);
 
 // Whether Metric::kAsinh should take the place of an automatic metric: more than 0.1 % of the readings are negative,
-// more than 5 % of the model's values lie below 3 floors, or a coordinate is biased by more than half of its standard
+// more than 5 % of the model's values lie below 3 floors, or a parameter is biased by more than half of its standard
 // error.
 bool WantsAsinh(const NoiseBias& bias);
 
 // The noise with which kAsinh is fitted: at least 2 % of the value, for a smaller knee would give the highlight to the
 // tails.
 NoiseModel NoiseForAsinh(const NoiseModel& estimated);
+// Whether two such differ by less than a tenth, which moves no parameter.
+bool IsNear(const NoiseModel& a, const NoiseModel& b);
 
 // "6.5 % of the readings are negative (noise floor 0.01/sr, noise 5 % of the value): fitted with metric asinh, knee
 // 0.2/sr; cube-root would be ..."

@@ -88,6 +88,23 @@ TEST(Fit, TurnsToAsinhWhereNoiseReachesZeroAndSaysSo) {
   EXPECT_EQ(Fit(given, {}, &measurement).parameters[0].values, material.parameters[0].values);
 }
 
+// A first fit that the noise has bent leaves residuals of 12 % of the value: the knee is not taken from those.
+TEST(Fit, TakesTheKneeFromAFitThatTheNoiseHasNotBent) {
+  GoniometerLayout layout = StandardLayout();
+  layout.polar_angles = {0.35, 0.7, 1.05};
+  const SyntheticCase metal = OneLobe(Ndf::kEllipsoid, 0.35, 0.11, 0, 3, 25, {0.7}, {0.02});
+  Measurement measurement = Synthetic(metal, layout, 0, 1);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal(0, 0.05);
+  for (std::size_t i = 0; i < measurement.samples.size(); ++i)
+    measurement.samples.values[0][i] += normal(random) / measurement.samples.wi_z[i];
+  const Material material = Fit(DefaultRecipe(metal.model, "test"), {}, &measurement);
+  EXPECT_EQ(material.metric, "asinh");
+  ASSERT_FALSE(material.remarks.empty());
+  EXPECT_NE(material.remarks[0].find("noise below 2 % of the value"), std::string::npos) << material.remarks[0];
+  EXPECT_NE(material.remarks[0].find("noise floor 0.05"), std::string::npos) << material.remarks[0];
+}
+
 TEST(Fit, KeepsTheDefaultMetricUnderNoiseProportionalToTheValue) {
   std::vector<std::vector<double>> truth;
   Measurement measurement = Noisy({0, 0.05}, 3, 8, &truth);

@@ -48,7 +48,8 @@ TEST(SigmaWeights, OfAsinhAreEvenForItsOwnNoise) {
 TEST(SigmaWeights, NegativeReadingsAndUnstatedUncertainty) {
   EXPECT_TRUE(SigmaWeights(Readings({1, 2}, {}, 1), Metric::kCubeRoot, {}).empty());
   EXPECT_TRUE(SigmaWeights(Readings({1, 2}, {0, 0}, 1), Metric::kCubeRoot, {}).empty());
-  const SigmaWeights weights(Readings({-0.5, 1, 2}, {0.1, 0.1, 0.1}, 1), Metric::kLog, {});
+  const Samples samples = Readings({-0.5, 1, 2}, {0.1, 0.1, 0.1}, 1);
+  const SigmaWeights weights(samples, Metric::kLog, {});
   for (const double weight : weights.AtReadings()) EXPECT_TRUE(weight > 0 && weight < 2);
 }
 
