@@ -229,13 +229,12 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   if (needs_noise) recipe.metric = Metric::kCubeRoot;
   std::optional<Found> found;
   found.emplace(recipe, *measurement, samples, incidences, options, &pool);
-  // Tables with cells of known size are computed from readings; rows of a goniometer are readings. Where only the
-  // magnitudes of noise about zero were kept, no metric helps.
-  const bool readings = samples.solid_angle.empty() && spread.size() == 0 && !FindRectifiedNoise(*measurement);
+  // Tables with cells of known size are computed from readings; rows of a goniometer are readings.
+  const bool readings = samples.solid_angle.empty() && spread.size() == 0;
   if (readings || needs_noise) {
     const auto predict = [&] {
-      return PredictNoiseBias(found->problem, found->layout, found->best().u, found->uncertainty.covariance, samples,
-                              incidences);
+      return PredictNoiseBias(found->layout, found->best().u, found->uncertainty.covariance, samples, incidences,
+                              &pool);
     };
     std::optional<NoiseBias> bias = predict();
     const bool may = needs_noise || (!recipe.metric_given && recipe.metric == Recipe().metric);
@@ -245,7 +244,8 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
           ": metric 'asinh' takes its knee from the noise of the values, and they show none that can be told "
           "from the model; use --metric log or cube-root");
     }
-    if (bias && may && (needs_noise || WantsAsinh(*bias))) {
+    // Where only the magnitudes of noise about zero were kept, no metric helps.
+    if (bias && may && (needs_noise || (WantsAsinh(*bias) && !FindRectifiedNoise(*measurement)))) {
       const Metric before = recipe.metric;
       recipe.metric = Metric::kAsinh;
       // A fit that the noise has biased leaves residuals that look like noise of the value: that of the new fit tells better.
@@ -254,9 +254,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         recipe.noise = NoiseForAsinh(bias->noise);
         found.emplace(recipe, *measurement, samples, incidences, options, &pool);
         const std::optional<NoiseBias> again = predict();
-        if (!again) break;
-        const NoiseModel next = NoiseForAsinh(again->noise);
-        if (IsNear(next, recipe.noise)) break;
+        if (!again || IsNear(NoiseForAsinh(again->noise), recipe.noise) || round + 1 == kMostRounds) break;
         bias->noise = again->noise;
       }
       if (!needs_noise) remarks.push_back(ToSwitchRemark(*bias, before));

@@ -48,7 +48,8 @@ void TreatNoise(const ReadOptions& options, Measurement* measurement) {
       " samples are below three times that. --noise-floor " + floor + " lets them weigh less");
 }
 
-void RequireSamples(const std::string& name, const Measurement& measurement) {
+void RequireSamples(const std::string& name, const Measurement& measurement,
+                    const char* advice = "check that the right file was named and that its units are stated") {
   if (measurement.samples.size() > 0) return;
   std::vector<std::string> reasons;
   for (int i = 0; i < kSetAsideReasons; ++i) {
@@ -56,11 +57,8 @@ void RequireSamples(const std::string& name, const Measurement& measurement) {
     const std::size_t count = measurement.set_aside[reason];
     if (count > 0) reasons.push_back(std::to_string(count) + " " + std::string(Words(reason)));
   }
-  const bool channels = measurement.set_aside[SetAsideReason::kHole] > 0 && measurement.channels.size() > 1;
   throw InputError(name + ": holds no usable sample" +
-                   (reasons.empty() ? std::string(": it has no data rows") : ": " + Join(reasons)) +
-                   (channels ? "; choose channels that were measured with --channels"
-                             : "; check that the right file was named and that its units are stated"));
+                   (reasons.empty() ? std::string(": it has no data rows") : ": " + Join(reasons)) + "; " + advice);
 }
 
 // Keys behind the name of a file whose format has none of its own: how the sample was turned.
@@ -154,7 +152,8 @@ Measurement FinishReading(Measurement measurement, const ReadOptions& options) {
   if (!options.channels.empty() && options.channels != "all")
     Apply(MakeChannelMap(options.channels, measurement.channels), &measurement);
   DropIncomplete(&measurement);
-  RequireSamples(measurement.source, measurement);
+  // Readers give samples that have a value in one channel at least.
+  RequireSamples(measurement.source, measurement, "choose channels that were measured with --channels");
   const auto stated = measurement.conventions.find("exclude");
   const std::string exclude = !options.exclude.empty()                  ? options.exclude
                               : stated != measurement.conventions.end() ? stated->second

@@ -12,6 +12,7 @@
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include "lobefit/base/parallel.h"
 #include "lobefit/core/brdf/brdf.h"
@@ -316,6 +317,7 @@ void SmallFits(std::size_t problems) {
 }  // namespace lobefit
 
 int main(int argc, char** argv) {
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres writes of every step of AutoDiff without a finite cost
   std::vector<std::string> parts(argv + 1, argv + argc);
   const bool quick = std::erase(parts, "--quick") > 0;
   const auto wanted = [&](const char* part) {

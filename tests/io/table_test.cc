@@ -101,7 +101,10 @@ TEST(Mit, StrideAndScaleAreOptions) {
   const Measurement m = ReadMeasurement(file.path(), options);
   EXPECT_EQ(m.samples.size(), 2U * 2 * 4 * 3);
   EXPECT_EQ(m.samples.values[0][0], 1);
-  EXPECT_EQ(m.remarks.size(), 1U);
+  ASSERT_EQ(m.remarks.size(), 2U);
+  EXPECT_NE(m.remarks[0].find("every 2. azimuth"), std::string::npos);
+  // f_r of 1 everywhere reflects pi times what it receives.
+  EXPECT_NE(m.remarks[1].find("albedo"), std::string::npos) << m.remarks[1];
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@ constexpr double kMostNegative = 0.001, kMostNearFloor = 0.05, kMostErrors = 0.5
 
 double DeviationAt(const NoiseModel& noise, double v) { return std::hypot(noise.floor, noise.relative * v); }
 
-// J^T W (T'' s^2 / 2) and J^T W J of the samples.
+// J^T W (T'' floor^2 / 2) and J^T W J of the samples.
 void AddShift(const Problem& problem, const Layout& layout, const KernelModel& kernel, const Samples& samples,
               const NoiseModel& noise, const std::vector<std::vector<double>>& f_r, Eigen::MatrixXd* hessian,
               Eigen::VectorXd* shift) {
@@ -41,9 +42,8 @@ void AddShift(const Problem& problem, const Layout& layout, const KernelModel& k
           if (linear.index >= 0) row(linear.index) += value[j * count];
           ++j;
         }
-        const double s = DeviationAt(noise, level[i]);
         hessian->selfadjointView<Eigen::Upper>().rankUpdate(row);
-        *shift += row * (std::sqrt(problem.Weight(begin + i)) * 0.5 * curvature[i] * s * s);
+        *shift += row * (std::sqrt(problem.Weight(begin + i)) * 0.5 * curvature[i] * noise.floor * noise.floor);
       }
     }
   }
@@ -81,23 +81,39 @@ std::string BiasInWords(const NoiseBias& bias, const char* metric) {
 
 }  // namespace
 
-std::optional<NoiseBias> PredictNoiseBias(const Problem& problem, const Layout& layout, const std::vector<double>& u,
-                                          const Eigen::MatrixXd& covariance, const Samples& samples,
-                                          const Incidences& incidences) {
+std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vector<double>& u,
+                                          const Eigen::MatrixXd& covariance, const Samples& all,
+                                          const Incidences& incidences, ThreadPool* pool) {
+  const std::vector<std::size_t> indices = SamplesForNoise(incidences);
+  if (indices.empty()) return std::nullopt;
+  const Samples samples = all.Subset(indices);
+  // Groups in the order in which they occur.
+  Incidences groups;
+  std::map<std::uint32_t, std::uint32_t> number;
+  for (const std::size_t i : indices) {
+    const auto [place, first] = number.try_emplace(incidences.group[i], static_cast<std::uint32_t>(groups.wi.size()));
+    if (first) groups.wi.push_back(incidences.wi[place->first]);
+    groups.group.push_back(place->second);
+  }
+  Problem problem(samples, layout.recipe());
   const KernelModel kernel = layout.ToKernel(u.data());
+  problem.Reweigh(kernel, pool);
   std::vector<std::vector<double>> f_r;
   ModelValues(problem.kernel_samples(), kernel, 0, problem.size(), &f_r);
-  const std::optional<NoiseModel> noise = EstimateNoise(samples, incidences, f_r);
+  const std::optional<NoiseModel> noise = EstimateNoise(samples, groups, f_r);
   if (!noise) return std::nullopt;
   NoiseBias bias;
   bias.noise = *noise;
-  const double share = 1 / static_cast<double>(samples.size() * f_r.size());
+  std::size_t negative = 0, near_floor = 0;
   for (std::size_t c = 0; c < f_r.size(); ++c) {
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      bias.negative += samples.values[c][i] < 0 ? share : 0;
-      bias.near_floor += f_r[c][i] * samples.wi_z[i] < 3 * noise->floor ? share : 0;
-    }
+    negative += static_cast<std::size_t>(
+        std::count_if(all.values[c].begin(), all.values[c].end(), [](double f) { return f < 0; }));
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      near_floor += f_r[c][i] * samples.wi_z[i] < 3 * noise->floor ? 1 : 0;
   }
+  const auto channels = static_cast<double>(f_r.size());
+  bias.negative = static_cast<double>(negative) / (channels * static_cast<double>(all.size()));
+  bias.near_floor = static_cast<double>(near_floor) / (channels * static_cast<double>(samples.size()));
   const auto n = static_cast<Eigen::Index>(layout.size());
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(n);

@@ -21,12 +21,13 @@ struct NoiseBias {
   std::string parameter;  // which one
 };
 
-// To first order noise of standard deviation s moves the mean of a transformed reading by T''(v) s^2 / 2, and the
-// parameters by d = (J^T J)^-1 J^T (T'' s^2 / 2). Good while v > 2 s: below, v is taken as 2 s. `covariance` is that of
+// To first order a noise floor s0 moves the mean of a transformed reading by T''(v) s0^2 / 2, and the parameters by
+// d = (J^T J)^-1 J^T (T'' s0^2 / 2). (What noise of the value does is the same share of every value, rho^2 / 3 under the cube root: no
+// reason for another curve, however many samples tell it from nothing.) Good while v > 2 s: below, v is taken as 2 s. `covariance` is that of
 // the solver's coordinates. Nothing where the noise cannot be estimated.
-std::optional<NoiseBias> PredictNoiseBias(const Problem& problem, const Layout& layout, const std::vector<double>& u,
+std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vector<double>& u,
                                           const Eigen::MatrixXd& covariance, const Samples& samples,
-                                          const Incidences& incidences);
+                                          const Incidences& incidences, ThreadPool* pool);
 
 // Whether Metric::kAsinh should take the place of an automatic metric: more than 0.1 % of the readings are negative,
 // more than 5 % of the model's values lie below 3 floors, or a parameter is biased by more than half of its standard

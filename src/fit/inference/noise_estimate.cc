@@ -10,7 +10,8 @@
 namespace lobefit {
 namespace {
 
-constexpr std::size_t kNeighbours = 6, kMostSamples = 20000, kMostOfIncidence = 1000, kFewest = 40;
+constexpr std::size_t kNeighbours = 6, kMostSamples = 4000, kMostOfIncidence = 300, kFewest = 40,
+                      kMostPredicted = 40000;
 
 struct PseudoResidual {
   double level, size;  // x_j and |e_j|
@@ -151,6 +152,24 @@ std::optional<NoiseModel> EstimateNoise(const Samples& samples, const Incidences
     if (!moved) step /= 2;
   }
   return NoiseModel{std::exp(at[0]), std::exp(at[1])};
+}
+
+std::vector<std::size_t> SamplesForNoise(const Incidences& incidences) {
+  std::vector<std::uint32_t> members(incidences.wi.size(), 0);
+  for (const std::uint32_t group : incidences.group) ++members[group];
+  std::size_t total = 0;
+  for (const std::uint32_t count : members) total += count > kNeighbours ? count : 0;
+  const std::size_t stride = (total + kMostPredicted - 1) / kMostPredicted;
+  std::vector<std::uint8_t> chosen(members.size(), 0);
+  std::size_t seen = 0;
+  for (std::size_t g = 0; g < members.size(); ++g) {
+    if (members[g] > kNeighbours && seen++ % stride == 0) chosen[g] = 1;
+  }
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < incidences.group.size(); ++i) {
+    if (chosen[incidences.group[i]] != 0) indices.push_back(i);
+  }
+  return indices;
 }
 
 }  // namespace lobefit

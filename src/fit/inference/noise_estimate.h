@@ -19,8 +19,12 @@ namespace lobefit {
 // in `relative` where samples are 15 degrees apart.
 //
 // f_r[channel][sample] of the model. Nothing where fewer than 40 samples have neighbours, or nothing but rounding is
-// left. At most some 20 000 samples are looked at, spread over the incidences.
+// left. At most some 4000 samples are looked at, spread over the incidences.
 std::optional<NoiseModel> EstimateNoise(const Samples& samples, const Incidences& incidences,
                                         const std::vector<std::vector<double>>& f_r);
+
+// Whole incidences with neighbours, spread over all, of some 40 000 samples at most: enough for the estimate. Indices of the samples; empty where no
+// incidence has more than 6.
+std::vector<std::size_t> SamplesForNoise(const Incidences& incidences);
 
 }  // namespace lobefit

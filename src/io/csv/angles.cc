@@ -19,7 +19,13 @@ class AngleFinder {
  public:
   AngleFinder(const InputFile& file, const CsvHeader& header, const ReadOptions& options,
               std::vector<CsvColumn>* columns, CsvLayout* layout, Measurement* notes)
-      : file_(file), header_(header), options_(options), columns_(*columns), layout_(*layout), notes_(*notes) {}
+      : file_(file),
+        header_(header),
+        options_(options),
+        columns_(*columns),
+        layout_(*layout),
+        notes_(*notes),
+        head_(header.head_coordinate) {}
 
   void Find() {
     ChooseUnit();
@@ -42,24 +48,33 @@ class AngleFinder {
     }
     return nullptr;
   }
+  // Columns of that meaning; the columns of a table whose names are its values count as one.
   std::size_t Count(C coordinate) const {
-    return static_cast<std::size_t>(std::count_if(columns_.begin(), columns_.end(), [&](const CsvColumn& column) {
+    const auto in_rows = std::count_if(columns_.begin(), columns_.end(), [&](const CsvColumn& column) {
       return column.role == ColumnRole::kCoordinate && column.coordinate == coordinate;
-    }));
+    });
+    return static_cast<std::size_t>(in_rows) + (InNames(coordinate) ? 1 : 0);
+  }
+  bool InNames(C coordinate) const {
+    return head_ == coordinate || std::any_of(columns_.begin(), columns_.end(), [&](const CsvColumn& column) {
+             return column.role == ColumnRole::kFixed && column.coordinate == coordinate;
+           });
+  }
+  // How messages name what has that meaning.
+  std::string NameOf(C coordinate, const char* in_names) {
+    const CsvColumn* column = Column(coordinate);
+    return column != nullptr ? column->name : in_names;
   }
   // Stated by a column, a key, or the names of the columns of a table.
   bool Known(C coordinate) {
-    if (Column(coordinate) != nullptr || header_.keys.Find(coordinate) != nullptr ||
-        header_.head_coordinate == coordinate)
-      return true;
-    return std::any_of(columns_.begin(), columns_.end(), [&](const CsvColumn& column) {
-      return column.role == ColumnRole::kFixed && column.coordinate == coordinate;
-    });
+    return Column(coordinate) != nullptr || header_.keys.Find(coordinate) != nullptr || InNames(coordinate);
   }
   void Become(C from, C to) {
     for (CsvColumn& column : columns_) {
-      if (column.role == ColumnRole::kCoordinate && column.coordinate == from) column.coordinate = to;
+      const bool angle = column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed;
+      if (angle && column.coordinate == from) column.coordinate = to;
     }
+    if (head_ == from) head_ = to;
   }
 
   void ChooseUnit() {
@@ -105,16 +120,16 @@ class AngleFinder {
       } else if (HasViewer() && !HasLight()) {
         Become(C::kTheta, C::kThetaI);
       } else if (!HasLight() && !HasViewer()) {
-        Fail("the column " + Quoted(*Column(C::kTheta)) +
-             " can be the light's or the viewer's polar angle; say where the light stands by a line '# theta_i: 30', "
+        Fail("the column '" + Excerpt(NameOf(C::kTheta, "theta")) +
+             "' can be the light's or the viewer's polar angle; say where the light stands by a line '# theta_i: 30', "
              "by FILE:theta_i=30, or which is which by --columns");
       }
     }
     if (Count(C::kPhi) != 1) return;
-    const CsvColumn* phi = Column(C::kPhi);
+    const std::string phi = NameOf(C::kPhi, "phi");
     const CsvColumn* viewer = Column(C::kThetaO);
     const bool three_axis = viewer != nullptr && ToLower(viewer->name).find("receive") != std::string::npos &&
-                            ToLower(phi->name).find("azim") != std::string::npos;
+                            ToLower(phi).find("azim") != std::string::npos;
     if (Known(C::kThetaH)) {
       Become(C::kPhi, Known(C::kPhiH) ? C::kPhiD : C::kPhiH);
     } else if (three_axis && !Known(C::kPhiI) && !Known(C::kPhiO)) {
@@ -126,8 +141,7 @@ class AngleFinder {
     } else if (Known(C::kPhiO) && !Known(C::kPhiI)) {
       Become(C::kPhi, C::kPhiI);
     } else if (!Known(C::kPhiI) && !Known(C::kPhiO) && !Known(C::kDeltaPhi)) {
-      notes_.conventions["azimuths"] =
-          Excerpt(phi->name) + " is relative to the light: 180 degrees is the mirror's side";
+      notes_.conventions["azimuths"] = Excerpt(phi) + " is relative to the light: 180 degrees is the mirror's side";
       Become(C::kPhi, C::kDeltaPhi);
     }
   }
@@ -209,8 +223,7 @@ class AngleFinder {
       if (column.role == ColumnRole::kFixed)
         directions.Give(column.coordinate, Scale(column.coordinate, column.angle_unit), column.from_horizon);
     }
-    if (header_.head_coordinate)
-      directions.Give(*header_.head_coordinate, Scale(*header_.head_coordinate, std::nullopt));
+    if (head_) directions.Give(*head_, Scale(*head_, std::nullopt));
     for (const FixedCoordinate& fixed : header_.keys.fixed) {
       if (directions.Has(fixed.coordinate)) continue;
       directions.Give(fixed.coordinate, Scale(fixed.coordinate, fixed.unit), fixed.from_horizon);
@@ -251,6 +264,7 @@ class AngleFinder {
   std::vector<CsvColumn>& columns_;
   CsvLayout& layout_;
   Measurement& notes_;
+  std::optional<C> head_;  // what the names of the columns of a table are
   AngleUnit default_unit_ = AngleUnit::kDegrees;
 };
 

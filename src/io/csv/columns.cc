@@ -271,12 +271,12 @@ CsvColumn ClassifyColumn(std::string_view name) {
   } else if (plain && attempt([&](CsvColumn* c) { return ClassifyWavelengthColumn(meaning, c); })) {
   } else if (plain && attempt([&](CsvColumn* c) { return ClassifyAngle(meaning, split.magnitude, c); })) {
   } else if (plain && attempt([&](CsvColumn* c) { return ClassifyComponent(split.words, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) {
+               return ClassifyValueOfChannel(split.words, c) && (c->role = ColumnRole::kChannel, true);
+             })) {
   } else if (plain && attempt([&](CsvColumn* c) { return ClassifyFixed(split.words, c); })) {
   } else if (HoldsWord(kIgnored, joined) || IsMuellerRatio(split.words)) {
     column.role = ColumnRole::kIgnored;
-  } else if (plain) {
-    attempt(
-        [&](CsvColumn* c) { return ClassifyValueOfChannel(split.words, c) && (c->role = ColumnRole::kChannel, true); });
   }
   ParseUnit(&column);
   return column;

@@ -45,7 +45,8 @@ void RowParser::TakeOther(std::string_view field, std::size_t column) {
     texts_[column] = text.data() >= field.data() && text.data() <= field.data() + field.size() ? text : Trim(field);
   if ((needed & kNumber) == 0) return;
   const std::optional<double> number = ParseCsvNumber(text, header_.decimal_mark);
-  if (number) {
+  // "nan(ind)" of C libraries is read as a number that is none.
+  if (number && !(std::isnan(*number) && IsNoValueWord(text))) {
     ++good_;
     numbers_[column] = *number;
     if ((needed & kMayLack) != 0 && !no_values_.empty() && no_values_.Holds(*number)) {

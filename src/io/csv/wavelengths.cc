@@ -82,6 +82,7 @@ Measurement WavelengthTable::Gather(bool keep_repeats) const {
   struct Sample {
     std::uint32_t pair = 0, line = 0, rows = 0, next = 0;  // next: of the same pair, 0 is none
     double weights = 0;
+    bool is_repeat = false;
   };
   std::vector<Sample> samples;
   std::vector<double> values;
@@ -109,6 +110,7 @@ Measurement WavelengthTable::Gather(bool keep_repeats) const {
       if (!keep_repeats) break;
       if (samples[at].next == 0) {
         const std::uint32_t opened = open_sample(entry);
+        samples[opened].is_repeat = true;
         samples[at].next = opened;
       }
       at = samples[at].next;
@@ -124,6 +126,11 @@ Measurement WavelengthTable::Gather(bool keep_repeats) const {
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Pair& pair = pair_directions_[samples[i].pair];
+    // A repeat that lacks a wavelength would make that of the mean unknown.
+    if (samples[i].is_repeat && samples[i].rows < channels) {
+      builder.Skip(SetAsideReason::kHole);
+      continue;
+    }
     if (!builder.Add(pair.wi, pair.wo, values.data() + i * channels, samples[i].line) || weights_ == Weights::kNone)
       continue;
     const double mean = samples[i].weights / samples[i].rows;

@@ -11,7 +11,7 @@ namespace lobefit {
 namespace {
 
 // Letters and signs beyond ASCII that names of columns are written with. Greek letters are words of their own.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 70> kLetters = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 72> kLetters = {{
     {"\xce\xb8", " theta "}, {"\xce\x98", " theta "}, {"\xcf\x91", " theta "},     {"\xcf\x86", " phi "},
     {"\xce\xa6", " phi "},   {"\xcf\x95", " phi "},   {"\xce\xbb", " lambda "},    {"\xce\x9b", " lambda "},
     {"\xce\x94", " delta "}, {"\xce\xb4", " delta "}, {"\xe2\x88\x86", " delta "}, {"\xce\xb2", " beta "},
@@ -25,11 +25,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 70> kLetters
     {"\xc3\xa2", "a"},       {"\xc3\xa7", "c"},       {"\xc3\xad", "i"},           {"\xc3\xac", "i"},
     {"\xc3\xae", "i"},       {"\xc3\xb3", "o"},       {"\xc3\xb2", "o"},           {"\xc3\xb4", "o"},
     {"\xc3\xba", "u"},       {"\xc3\xb9", "u"},       {"\xc3\xbb", "u"},           {"\xc3\xb1", "n"},
-    {"\xc3\x89", "e"},       {"\xc3\x81", "a"},       {"\xe2\x88\x92", "-"},       {"\xe2\x80\x93", "-"},
-    {"\xe2\x80\x94", "-"},   {"\xe2\x80\x90", "-"},   {"\xc2\xa0", " "},           {"\xe2\x80\xaf", " "},
-    {"\xe2\x80\x99", "'"},   {"\xc2\xb5", "u"},       {"\xce\xbc", "u"},           {"\xc2\xb0", " deg "},
-    {"\xc2\xba", " deg "},   {"\xcb\x9a", " deg "},   {"\xe2\x88\xa3", "|"},       {"\xc2\xb7", "*"},
-    {"\xc3\x97", "*"},       {"\xc2\xb9", "1"},
+    {"\xc3\x89", "e"},       {"\xc3\x85", "A"},       {"\xe2\x84\xab", "A"},       {"\xc3\x81", "a"},
+    {"\xe2\x88\x92", "-"},   {"\xe2\x80\x93", "-"},   {"\xe2\x80\x94", "-"},       {"\xe2\x80\x90", "-"},
+    {"\xc2\xa0", " "},       {"\xe2\x80\xaf", " "},   {"\xe2\x80\x99", "'"},       {"\xc2\xb5", "u"},
+    {"\xce\xbc", "u"},       {"\xc2\xb0", " deg "},   {"\xc2\xba", " deg "},       {"\xcb\x9a", " deg "},
+    {"\xe2\x88\xa3", "|"},   {"\xc2\xb7", "*"},       {"\xc3\x97", "*"},           {"\xc2\xb9", "1"},
 }};
 
 bool IsLower(char c) { return c >= 'a' && c <= 'z'; }
@@ -165,6 +165,11 @@ NameWords SplitName(std::string_view name) {
   AppendWord(word, &split.words);
   if (split.unit.empty() && split.words.size() > 1 && IsUnitOfAnything(split.words.back())) {
     split.unit = PlainUnit(split.words.back());
+    split.words.pop_back();
+  }
+  // An "A" by itself may be anything, behind a number alone it is the angstrom.
+  if (split.unit.empty() && split.words.size() == 2 && split.words[1] == "a" && ParseDouble(split.words[0])) {
+    split.unit = "a";
     split.words.pop_back();
   }
   return split;

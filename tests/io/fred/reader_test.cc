@@ -44,9 +44,9 @@ TEST(Fred, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(ErrorOf(ReadFred, head + "10 0\n1 2 3,5\n"),
             "line 4: value is '3,5', which is not a number; write a decimal point instead of a comma");
   EXPECT_EQ(
-      ErrorOf(ReadFred, "type bsdf_data\nformat angles=deg bsdf=log\n"),
-      "line 2: the format line has 'bsdf=log', which is not known; allowed are angles=deg, angles=rad, bsdf=value "
-      "and scale=NUMBER");
+      ErrorOf(ReadFred, "type bsdf_data\nformat angles=deg bsdf=sqrt\n"),
+      "line 2: the format line has 'bsdf=sqrt', which is not known; allowed are angles=deg, angles=rad, angles=sin, "
+      "bsdf=value, bsdf=log and scale=NUMBER");
   EXPECT_EQ(ErrorOf(ReadFred, "type bsdf_data\n"),
             "line 1: the file ends before its format line ('format angles=deg bsdf=value scale=1'); it may be cut off");
 }
