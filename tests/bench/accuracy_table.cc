@@ -99,17 +99,13 @@ Figures AgainstTable(const Quantity& quantity, const Table& table) {
       const double size = std::fabs(table.Number(row, column.name));
       if (size > largest[DerivedFrom(column.name)]) largest[DerivedFrom(column.name)] = size;
     }
-    // The tables' Beckmann values are wrong by up to 1e-60 far behind the surface, their derivatives by 1e-33
-    // (cancellation at 60 digits).
-    const bool beckmann =
-        quantity.name == "sigma_beckmann" || (table.Has("kind") && table.Text(row, "kind") == "beckmann");
     for (std::size_t k = 0; k < out.size(); ++k) {
       const std::string& column = quantity.results[k].name;
       const std::string function = DerivedFrom(column);
       const double expected = table.Number(row, column);
-      const double scale = function.empty() ? std::fabs(expected) : largest[function];
-      const double floor = beckmann ? (function.empty() ? 1e-60 : 1e-33) : 0;
-      const double error = std::fabs(out[k] - expected) - floor;
+      const double size = function.empty() ? std::fabs(expected) : largest[function];
+      const double scale = size > 0 ? size : 1;
+      const double error = std::fabs(out[k] - expected);
       if (!(error > 0) || quantity.results[k].is_flag) continue;
       const double cond = Condition(table, row, function.empty() ? column : function);
       if (function.empty()) {

@@ -72,12 +72,7 @@ struct Tolerance {
 
 Tolerance ToleranceOf(const ReferenceTable& table, const std::string& name, std::size_t row,
                       const std::string& column) {
-  // The tables' Beckmann rows were computed as 1 +- erf(a) with 60 digits and differenced with steps of 1e-20 x: beyond
-  // |a| = 11 their values are wrong by up to 1e-60 (all digits of them, checked with 400 digits) and their derivatives
-  // by 1e-60 / step. These floors take only such rows out.
-  const bool beckmann =
-      name == "sigma_beckmann" || ((name == "smith_lambda" || name == "g2") && table.Text(row, "kind") == "beckmann");
-  Tolerance t{1e-12, beckmann ? 1e-60 : 0, 1e-9, beckmann ? 1e-33 : 0};
+  Tolerance t{1e-12, 0, 1e-9, 0};
   if (name == "sigma_sg") t = {0, 1e-14, 1e-9, 0};
   if (name == "white_furnace" || name == "vndf_moments" || name == "ellipsoid_from_offcenter") t.relative = 1e-9;
   if (name == "aperture_ggx") t.relative = 1e-10;
