@@ -4,7 +4,7 @@
 
 #include <lobefit/core/brdf/brdf.h>
 #include <lobefit/fit/fit.h>
-#include <lobefit/measurement/synthesis.h>
+#include <lobefit/synthesis/synthesis.h>
 
 int main() {
   lobefit::Model model;
