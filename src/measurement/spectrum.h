@@ -21,12 +21,12 @@ struct ChannelMap {
 // `choice` as on the command line (--channels):
 //   all         as they are
 //   rgb         linear sRGB. Wavelengths: CIE 1931 2-degree observer under illuminant D65, the spectrum linear between
-//   its wavelengths and
-//               constant beyond them, integrated from 380 to 780 nm in steps of 1 nm, scaled so that a white
-//               reflectance is (1, 1, 1)
+//               its wavelengths and constant beyond them, integrated from 380 to 780 nm in steps of 1 nm, scaled so
+//               that a white reflectance is (1, 1, 1)
 //   luminance   CIE Y of the same
 //   spectrum    R G B as a smooth spectrum of 400 to 700 nm in steps of 10 nm whose R G B are these (three overlapping
-//   bands) LIST        names or wavelengths in nm or ranges of them, separated by commas: "R,B", "550,600nm", "400:700"
+//               bands)
+//   LIST        names or wavelengths in nm or ranges of them, separated by commas: "R,B", "550,600nm", "400:700"
 // Throws UsageError for a choice that the channels cannot give: rgb needs R G B, X Y Z or wavelengths that cover 430 to
 // 650 nm.
 ChannelMap MakeChannelMap(const std::string& choice, const Channels& channels);

@@ -24,7 +24,7 @@ Quantity FresnelF82Quantity() {
   Quantity q;
   q.name = "fresnel_f82";
   q.description = "Schlick's reflectance with an edge tint";
-  q.source = "[Hoffman 2019], [Kutz 2021]; math.md 8.3";
+  q.source = "[Hoffman 2019], [Kutz 2021]; MATH.md 8.3";
   q.inputs = {Cosine("cos", "cosine of the angle of incidence"),
               Within("f0", "1", "reflectance at normal incidence", 0, 1),
               AnyNumber("tint", "1", "factor of Schlick's reflectance at cos = 1/7")};
@@ -46,7 +46,7 @@ Quantity FresnelCurveQuantity() {
   Quantity q;
   q.name = "fresnel_curve";
   q.description = "reflectance as a cubic B-spline of the cosine, inner knots .25 and .6";
-  q.source = "math.md 8.3";
+  q.source = "MATH.md 8.3";
   q.inputs = {Cosine("cos", "cosine of the angle of incidence")};
   for (std::size_t k = 0; k < kFresnelCurveSize; ++k)
     q.inputs.push_back(AnyNumber("F_" + std::to_string(k), "1", "coefficient, from grazing to normal incidence"));
@@ -68,7 +68,7 @@ Quantity InterfacedQuantity() {
   Quantity q;
   q.name = "diffuse_interfaced";
   q.description = "Lambertian body below a smooth dielectric, with all reflections inside";
-  q.source = "[Elias 2001]; math.md 8.4";
+  q.source = "[Elias 2001]; MATH.md 8.4";
   q.inputs = {Cosine("cos_i", "cosine of the light's polar angle"),
               Cosine("cos_o", "cosine of the viewer's polar angle"), Index(),
               Within("albedo", "1", "albedo of the body below the interface", 0, 1)};
@@ -110,7 +110,7 @@ Quantity OrenNayarQuantity() {
   Quantity q;
   q.name = "diffuse_eon";
   q.description = "energy-preserving Oren-Nayar";
-  q.source = "[Portsmouth, Kutz, Hill 2024]; math.md 8.4";
+  q.source = "[Portsmouth, Kutz, Hill 2024]; MATH.md 8.4";
   q.inputs = {Within("albedo", "1", "albedo of the facets", 0, 1), Within("roughness", "1", "roughness", 0, 1)};
   const std::vector<std::string> parameters = ParameterNames(q);
   AddUpperDirection(&q, "i", "direction to the light");
@@ -141,7 +141,7 @@ Quantity RetroQuantity() {
   Quantity q;
   q.name = "retro_brdf";
   q.description = "specular factor of a lobe about the back direction, without Fresnel term";
-  q.source = "[Raab 2025], [Portsmouth 2026]; math.md 8.5";
+  q.source = "[Raab 2025], [Portsmouth 2026]; MATH.md 8.5";
   q.inputs = SlopeColumns();
   const std::vector<std::string> parameters = ParameterNames(q);
   AddUpperDirection(&q, "o", "direction to the viewer");
@@ -168,7 +168,7 @@ Quantity CoatQuantity() {
   Quantity q;
   q.name = "coat_brdf";
   q.description = "dielectric coat over a GGX lobe with Schlick's reflectance and a Lambertian part";
-  q.source = "math.md 8.6";
+  q.source = "MATH.md 8.6";
   q.inputs = SlopeShapeColumns();
   q.inputs.push_back(Within("f0", "1", "reflectance of the base at normal incidence", 0, 1));
   q.inputs.push_back(

@@ -100,7 +100,7 @@ Quantity ProfileDQuantity() {
   Quantity q;
   q.name = "profile_D";
   q.description = "distribution of normals with a free radial profile, knots at r = 0 1 2 4 8 16 32";
-  q.source = "math.md 8.1; [Heitz] eq 87-95";
+  q.source = "MATH.md 8.1; [Heitz] eq 87-95";
   q.inputs = SlopeShapeColumns();
   AddCoefficients(&q, DefaultSpline()->size());
   const std::vector<std::string> parameters = ParameterNames(q);
@@ -128,7 +128,7 @@ Quantity ProfileSigmaQuantity() {
   Quantity q;
   q.name = "profile_sigma";
   q.description = "projected area and Smith masking of a free radial profile, knots at r = 0 1 2 4 8 16 32";
-  q.source = "math.md 8.1; [Heitz] eq 96; [Loubet] eq 1";
+  q.source = "MATH.md 8.1; [Heitz] eq 96; [Loubet] eq 1";
   q.inputs = SlopeShapeColumns();
   AddCoefficients(&q, DefaultSpline()->size());
   const std::vector<std::string> parameters = ParameterNames(q);
@@ -159,7 +159,7 @@ Quantity ProfileBrdfQuantity() {
   Quantity q;
   q.name = "profile_brdf";
   q.description = "specular factor of a free radial profile without Fresnel term, separable Smith masking";
-  q.source = "math.md 8.1; [Heitz] eq 29, 98, 99";
+  q.source = "MATH.md 8.1; [Heitz] eq 29, 98, 99";
   q.inputs = SlopeShapeColumns();
   AddCoefficients(&q, DefaultSpline()->size());
   const std::vector<std::string> parameters = ParameterNames(q);
@@ -208,7 +208,7 @@ Quantity ProfileRadialQuantity() {
   Quantity q;
   q.name = "profile_radial";
   q.description = "profile, its density and its masking in one dimension, knots at r = 0 .5 1 2 4 8 16 32 64";
-  q.source = "math.md 8.1";
+  q.source = "MATH.md 8.1";
   q.inputs = {AnyNumber("t", "1", "squared distance from the mean slope in units of the ellipse"),
               AnyNumber("a", "1", "c / sqrt(q), signed, not 0")};
   q.inputs[0].low = 0;
@@ -262,7 +262,7 @@ Quantity StudentDQuantity() {
   Quantity q;
   q.name = "student_D";
   q.description = "distribution of normals whose slopes follow Student's distribution";
-  q.source = "[Ribardiere 2017]; math.md 8.2";
+  q.source = "[Ribardiere 2017]; MATH.md 8.2";
   q.inputs = StudentColumns();
   const std::vector<std::string> parameters = ParameterNames(q);
   AddDirection(&q, "m", "micro normal; D is 0 at and below the horizon");
@@ -279,7 +279,7 @@ Quantity StudentSigmaQuantity() {
   Quantity q;
   q.name = "student_sigma";
   q.description = "projected area and Smith's Lambda of Student's distribution of slopes";
-  q.source = "[Ribardiere 2017]; math.md 8.2";
+  q.source = "[Ribardiere 2017]; MATH.md 8.2";
   q.inputs = StudentColumns();
   const std::vector<std::string> parameters = ParameterNames(q);
   AddDirection(&q, "u", "direction");

@@ -65,7 +65,7 @@ class ReferenceTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-// Accepted relative error of a value: 64 eps max(1, cond) (see math.md section 7 on test tolerances).
+// Accepted relative error of a value: 64 eps max(1, cond) (see MATH.md section 7 on test tolerances).
 inline double ValueTolerance(double cond) { return 64 * std::numeric_limits<double>::epsilon() * std::fmax(1.0, cond); }
 
 }  // namespace lobefit

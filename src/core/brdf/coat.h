@@ -1,6 +1,6 @@
 // A clear dielectric coat over any base, and the mirrored direction of retroreflecting lobes.
 //
-// math.md sections 8.5, 8.6. With T(c) = 1 - F(c, n), u' the direction inside the coat and tau its optical depth along
+// MATH.md sections 8.5, 8.6. With T(c) = 1 - F(c, n), u' the direction inside the coat and tau its optical depth along
 // the normal, one way:
 //   refracted:  f = f_c + (T_i T_o / n^2) exp(-tau (1 / i'_z + 1 / o'_z)) f_base(i', o')
 //   layered:    f = f_c + T_i T_o exp(-2 tau) f_base(i, o),

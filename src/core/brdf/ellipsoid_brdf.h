@@ -13,7 +13,7 @@
 namespace lobefit {
 
 // kClamped: G1 = min(1, cos / sigma) [Walter eq 6, Loubet eq 1], with a kink in the parameters; kUnclamped: smooth, but
-// reflects more than it receives from directions where a tilted lobe hides nothing (math.md section 5).
+// reflects more than it receives from directions where a tilted lobe hides nothing (MATH.md section 5).
 enum class G1Kind { kClamped, kUnclamped };
 
 struct BrdfFactors {

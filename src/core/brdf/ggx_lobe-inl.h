@@ -2,7 +2,7 @@
 // V is double or a vector of the SIMD library. The operations and their order are the same, and the files that include
 // this are compiled without contraction to FMA, so that every instruction set gives the same bits.
 //
-// D: off-centre, correlated GGX [Heitz eq 84-95, Loubet sec 2] = ellipsoid NDF [Walter eq 1] (math.md section 6):
+// D: off-centre, correlated GGX [Heitz eq 84-95, Loubet sec 2] = ellipsoid NDF [Walter eq 1] (MATH.md section 6):
 //   h = wi + wo (not normalised), g = (-h_x - x_s h_z, -h_y - y_s h_z), y = L^-1 g, K = h_z^2 + |y|^2, D = |h|^4 / (pi
 //   a c K^2)
 // G1 [Walter eq 6 = Loubet eq 1]: cos / sigma, sigma = (c_u + s) / 2, s = sqrt(c_u^2 + q), c_u = u_z - x_s u_x - y_s

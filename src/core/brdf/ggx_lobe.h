@@ -25,7 +25,7 @@ struct DirectionArrays {
 // The lobe is given in slope coordinates (off_center.h), in which it is fitted; any finite values are valid. `masking`
 // is one of the first three kinds; lobe.h evaluates all. gradient: 5 arrays of `count`, one after the other, d specular
 // / d v[j]; null = not wanted. The value is the same either way. Where a clamped G1 is at 1, its derivative is 0: the
-// model has a kink there. Formulas: [Walter eq 1, 4-6], [Heitz eq 99], in slope space (math.md sections 6 and 7); see
+// model has a kink there. Formulas: [Walter eq 1, 4-6], [Heitz eq 99], in slope space (MATH.md sections 6 and 7); see
 // ggx_lobe-inl.h.
 void GgxLobe(const DirectionArrays& directions, const SlopeCoordinates& shape, Masking masking, double* specular,
              double* cos_d, double* gradient);

@@ -3,7 +3,7 @@
 // [Heitz] Heitz 2014 eq 29: f_r = F(c) D(wh) G2(wo, wi, wh) / (4 (wo.n) (wi.n)), c = wo.wh. The Smith kinds are built
 // from Lambda(u) = sigma(u) / (u.n) - 1, i.e. G1 = (u.n) / sigma(u) [Walter eq 6, Loubet eq 1]: for a centred
 // distribution this is Heitz' Lambda, for one that leans it is the convention of a BRDF that divides by the cosines
-// (math.md section 4). Lambda can then be negative, down to -1; it is cut at 0, a kink, which for the separable kind
+// (MATH.md section 4). Lambda can then be negative, down to -1; it is cut at 0, a kink, which for the separable kind
 // gives exactly [Walter eq 5-6]. The separable kind alone exists without the cut (`clamp` false): in the correlated
 // ones the denominator could vanish.
 #pragma once

@@ -40,7 +40,7 @@ class EllipsoidVndfSampler {
   EllipsoidVndfSampler(const Ellipsoid& ellipsoid, const Vec3& psi);
 
   // Version 3: a point of the unit disc, pushed row by row onto the crescent that is the lune's silhouette. Not the
-  // affine map of the paper, which cannot make a crescent (math.md section 5), but a shear of each row: area preserving
+  // affine map of the paper, which cannot make a crescent (MATH.md section 5), but a shear of each row: area preserving
   // up to a constant, smooth, no rejection. u1, u2 in [0, 1].
   Vec3 Sample(double u1, double u2) const;
 

@@ -66,7 +66,7 @@ void FresnelCurveBasis(double c, double* basis, double* slope) {
 }
 
 void FresnelCurveOfSchlick(double f0, double* coefficients) {
-  // Minimax for f0 = 0 (math.md 8.3).
+  // Minimax for f0 = 0 (MATH.md 8.3).
   constexpr double kSchlick[kFresnelCurveSize] = {1.001385, 0.580863, 0.075146, -0.006957, -0.002188, 0.001385};
   for (std::size_t k = 0; k < kFresnelCurveSize; ++k)
     coefficients[k] = std::clamp(f0 + (1.0 - f0) * kSchlick[k], 0.0, 1.0);

@@ -14,7 +14,7 @@ double FresnelSchlick(double c, double f0, double* dF_dc = nullptr, double* dF_d
 
 // Schlick with an edge tint [Hoffman 2019; Kutz 2021], as OpenPBR and MaterialX (color82) have it: F = S(c) - b c (1 -
 // c)^6, S Schlick's, b such that F = tint S at c = 1/7 (82 degrees). tint = 1 is Schlick. Linear in f0 and b; F can be
-// negative where f0 and tint are both small (math.md 8.3).
+// negative where f0 and tint are both small (MATH.md 8.3).
 struct SchlickF82Gradient {
   double dc, df0, dtint;
 };
@@ -53,7 +53,7 @@ double FresnelDielectric(double c, double n, double* dF_dc = nullptr, double* dF
 double DielectricTransmittance(double c, double n, double* dT_dc = nullptr, double* dT_dn = nullptr);
 
 // Mean reflectance of a dielectric, n >= 1, for light that comes from all directions: outside, F_ex = 2 int_0^1 F(c) c
-// dc, and inside, 1 - (1 - F_ex) / n^2. [Elias 2001; closed form in math.md 8.4] By quadrature of a form without
+// dc, and inside, 1 - (1 - F_ex) / n^2. [Elias 2001; closed form in MATH.md 8.4] By quadrature of a form without
 // subtraction, since the closed one has no digits left near n = 1.
 double DielectricMeanReflectance(double n, double* dF_dn = nullptr);
 

@@ -1,7 +1,7 @@
 // Masking-shadowing of two directions from their Smith Lambdas, the V-cavity model, and three functions for comparison
 // only.
 //
-// [Heitz] Heitz 2014: eq 98 separable, 99 height-correlated, 100 direction-correlated (math.md section 4: the first
+// [Heitz] Heitz 2014: eq 98 separable, 99 height-correlated, 100 direction-correlated (MATH.md section 4: the first
 // term is lambda G1(wo) G1(wi)), 101 height- and direction-correlated, 49-50 V-cavity, 56-60 implicit and Kelemen. For
 // Lambda >= 0: (98) <= (99) <= (101) <= min(G1(wo), G1(wi)). The factor X+(wo.m) X+(wi.m) is the caller's where not
 // said otherwise.

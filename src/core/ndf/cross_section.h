@@ -2,9 +2,10 @@
 // dm over the sphere, with u = cos of the angle between w and the axis n. The projected area of the micro surface that
 // a direction sees; G1 = u / sigma.
 //
-// Normalisations differ by family, as the papers have them (math.md section 0):
-//   sphere:         int D dm = 1 over the sphere, D in 1/sr  - ring, Kagiwada-Kalaba, spherical Gaussian; isotropic
-//   limit sigma = 1/4 projected area: int D (m.n) dm = 1                       - Beckmann, GGX; sigma(1) = 1
+// Normalisations differ by family, as the papers have them (MATH.md section 0):
+//   sphere:         int D dm = 1 over the sphere, D in 1/sr - ring, Kagiwada-Kalaba, spherical Gaussian;
+//                   isotropic limit sigma = 1/4
+//   projected area: int D (m.n) dm = 1                      - Beckmann, GGX; sigma(1) = 1
 // [dEon]'s "printed" form of ring and Kagiwada-Kalaba uses int D du = 1 and is 2 pi times the sphere form.
 // axial_ndf.h has the distributions themselves, all normalised by projected area.
 //
@@ -52,7 +53,7 @@ double BeckmannCrossSection(double alpha, double u, double* dsigma_dalpha = null
 double GgxCrossSection(double alpha, double u, double* dsigma_dalpha = nullptr, double* dsigma_du = nullptr);
 
 // Kagiwada-Kalaba D = b / (4 pi (1 - b u) atanh b), 0 < b < 1, sphere normalisation: [dEon] eq 27 corrected / (2 pi),
-// in the form of math.md section 7: even part ((1 - w) + |u| t) / (2 b atanh b), odd part u (1/b - 1/atanh b) / 2, w^2
+// in the form of MATH.md section 7: even part ((1 - w) + |u| t) / (2 b atanh b), odd part u (1/b - 1/atanh b) / 2, w^2
 // = 1 - b^2 (1 - u^2).
 double KagiwadaKalabaCrossSection(double b, double u, double* dsigma_db = nullptr, double* dsigma_du = nullptr);
 

@@ -1,6 +1,6 @@
 // Cross-section of the spherical Gaussian of normals [dEon section 2.5], D = csch(k) k e^(k u) / (4 pi), k = 2 /
 // alpha^2, sphere normalisation (int D dm = 1): exact, and every approximation of the paper in its corrected reading
-// (math.md section 2), with measured errors and a choice among them. alpha > 0; it tends to Beckmann's roughness for
+// (MATH.md section 2), with measured errors and a choice among them. alpha > 0; it tends to Beckmann's roughness for
 // small alpha and to the isotropic D = 1/(4 pi), sigma = 1/4, for large.
 //
 // Every u in [-1, 1]. Derivatives by alpha and u where not null; the value is the same bits either way. No clamps: the
@@ -12,7 +12,7 @@
 namespace lobefit {
 
 // Exact to about 1e-15 absolute. alpha >= 0.3: the sum over Legendre polynomials [dEon eq 38 with c_l = i_l(k) /
-// i_0(k), math.md section 7]; below: the odd part in closed form and the rest by a fixed quadrature of eq 29 about its
+// i_0(k), MATH.md section 7]; below: the odd part in closed form and the rest by a fixed quadrature of eq 29 about its
 // peak, with full relative accuracy for the tail u < 0.
 double SgCrossSection(double alpha, double u, double* dsigma_dalpha = nullptr, double* dsigma_du = nullptr);
 

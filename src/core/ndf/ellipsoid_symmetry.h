@@ -1,6 +1,6 @@
 // Which parameters are the same ellipsoid distribution, and in which directions of parameter space nothing changes.
 //
-// [Walter] ellipsoid NDF, eq 1-3; the identities are those of math.md section 5. Every function but the mirror image
+// [Walter] ellipsoid NDF, eq 1-3; the identities are those of MATH.md section 5. Every function but the mirror image
 // and the turn returns parameters of the same distribution.
 #pragma once
 

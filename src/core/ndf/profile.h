@@ -1,7 +1,7 @@
 // Free radial profiles of a slope distribution: the logarithm of the density is a spline, written by its local
 // exponent, and its coefficients are parameters of a fit beside the five of the ellipse.
 //
-// [Heitz] Heitz 2014 sec 5.3 (shape-invariant distributions); math.md section 8.1. t is the squared distance from the
+// [Heitz] Heitz 2014 sec 5.3 (shape-invariant distributions); MATH.md section 8.1. t is the squared distance from the
 // mean slope in the metric of the ellipse ([Heitz eq 95]), r = sqrt(t), u = ln(1 + t):
 //   ln f(t) = -2 u + E(u),   E(u) = sum_k q_k B_k(u),   P22 = f(t) / (Z alpha_x alpha_y sqrt(1 - r_xy^2)),
 //   Z = pi int_0^inf f dt.

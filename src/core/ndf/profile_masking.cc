@@ -32,7 +32,7 @@ double SMinusAtan(double s, double a) {
 }
 
 // M, T, P2 at a >= 1 of f = (1 + t)^-c, divided by (1 + a^2)^-c, and the derivatives of their logarithms by c less the
-// -ln(1 + a^2) of that factor. All terms are positive (math.md 8.2 with gamma = c in units of sqrt(c - 1)).
+// -ln(1 + a^2) of that factor. All terms are positive (MATH.md 8.2 with gamma = c in units of sqrt(c - 1)).
 struct PowerMoments {
   double value[3], dlog[3];
 };

@@ -1,6 +1,6 @@
 // Smith masking of a profile (profile.h): its one-dimensional Lambda, by a fixed quadrature and by a table.
 //
-// [Heitz] Heitz 2014 eq 73-78, 96; math.md section 8.1. With a = c / sqrt(q) of smith.h and P2 the one-dimensional
+// [Heitz] Heitz 2014 eq 73-78, 96; MATH.md section 8.1. With a = c / sqrt(q) of smith.h and P2 the one-dimensional
 // density of slopes,
 //   T(a) = int_a^inf P2,  M(a) = int_a^inf T,   sigma = sqrt(q) S(a),  S(a) = M(-a) = a + M(a);
 // as integrals over s, t = a^2 + s^2, whose integrands are positive:

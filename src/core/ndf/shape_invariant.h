@@ -1,6 +1,6 @@
 // Shape-invariant distributions of normals: a radial profile (profile.h) stretched, sheared and moved in slope space.
 //
-// [Heitz] Heitz 2014 sec 5.3, eq 73-78, 87-97; math.md section 8.1. With H = m_z^2 + Q (Q of [Heitz eq 95] times
+// [Heitz] Heitz 2014 sec 5.3, eq 73-78, 87-97; MATH.md section 8.1. With H = m_z^2 + Q (Q of [Heitz eq 95] times
 // m_z^2), D is GGX's D times e^E pi / Z, and sigma is GGX's sigma plus sqrt(q) times what M differs: at q = 0 both are
 // those of slope_distribution.h and smith.h to the bit.
 #pragma once

@@ -1,6 +1,6 @@
 // The ellipsoid distribution (off-centre, correlated GGX) evaluated in the fitting coordinates.
 //
-// [Heitz] Heitz 2014, eq 64, 84, 95-97; [Loubet] eq 1 and sec 2; math.md section 6: with Q^-1 = L L^T, L = [[a, 0], [b,
+// [Heitz] Heitz 2014, eq 64, 84, 95-97; [Loubet] eq 1 and sec 2; MATH.md section 6: with Q^-1 = L L^T, L = [[a, 0], [b,
 // c]],
 //   y = L^-1 ((-h_x, -h_y) - h_z mean),   D(h) = 1 / (pi a c (h_z^2 + |y|^2)^2),
 //   c_u = u_z - mean.u_xy,  q = |L^T u_xy|^2,  sigma(u) = (c_u + sqrt(c_u^2 + q)) / 2.

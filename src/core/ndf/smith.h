@@ -6,7 +6,7 @@
 //   q(u) = alpha_o^2 sin^2 theta             squared width of the distribution along u, a = c / sqrt(q)
 //   sigma(u) = int D(m) <m.u> dm = c (1 + Lambda(a)) >= 0 for either sign of c; at q = 0 (u along the normal) sigma =
 //   max(c, 0).
-// Two conventions of G1 exist; do not mix them (math.md section 4): SmithG1 = c / sigma = 1 / (1 + Lambda) belongs with
+// Two conventions of G1 exist; do not mix them (MATH.md section 4): SmithG1 = c / sigma = 1 / (1 + Lambda) belongs with
 // a BRDF that divides by c (LEADR), |u.n| / sigma [Walter, Loubet] with one that divides by the cosines. The BRDFs of
 // this library use the second. u is a unit direction; gradients are in the order alpha_x, alpha_y, r, slope_x, slope_y;
 // null skips them.

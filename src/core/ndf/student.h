@@ -1,7 +1,7 @@
 // Student's t distribution of slopes: one exponent between GGX (gamma = 2) and Beckmann (gamma -> infinity).
 //
 // [Ribardiere 2017] Ribardiere, Bringier, Meneveaux and Simonot, STD: Student's t-distribution of slopes for
-// microfacet based BSDFs; math.md section 8.2. f = (1 + t / (gamma - 1))^-gamma, Z = pi; the mean slope exists for
+// microfacet based BSDFs; MATH.md section 8.2. f = (1 + t / (gamma - 1))^-gamma, Z = pi; the mean slope exists for
 // gamma > 3/2. With alpha times sqrt(gamma - 1) it is the power law of profile.h, from which its masking is taken: M
 // has a closed form (hypergeometric), its derivative by gamma has none.
 #pragma once

@@ -59,7 +59,7 @@ double Sel(double alpha_x, double alpha_y, const Vec3& rotation, const Vec3& w, 
 // Integral of K over the sphere: 4 pi alpha^2 for equal alphas, larger than 4 pi alpha_x alpha_y otherwise. In closed
 // form by Carlson's R_F and R_D: 2 pi alpha_x alpha_y c (2 R_F - 2/3 R_D b^2), c = (1+A)/2, b = (1-A)/2, arguments
 // (alpha_x^2, alpha_y^2, c^2): twice the Newtonian potential of the solid ellipsoid at the origin. Not in the paper
-// (math.md section 1).
+// (MATH.md section 1).
 double SelIntegral(double alpha_x, double alpha_y, double* dintegral_dalpha_x = nullptr,
                    double* dintegral_dalpha_y = nullptr, SelKink kink = SelKink::kNan);
 

@@ -10,7 +10,7 @@
 namespace lobefit {
 
 // Radius drawn from the isotropic P between r_min and r_max (which may be infinite): [Loubet eq 19] in the form of
-// math.md section 3, s^2 = ((1-v) r_min^2 B + v r_max^2 A) / ((1-v) B + v A), A = alpha^2 + r_min^2, B = alpha^2 +
+// MATH.md section 3, s^2 = ((1-v) r_min^2 B + v r_max^2 A) / ((1-v) B + v A), A = alpha^2 + r_min^2, B = alpha^2 +
 // r_max^2. 0 <= r_min <= r_max, v in [0, 1]; derivatives for s > 0.
 struct TruncatedRadiusGradient {
   double dalpha, dr_min, dr_max, dv;

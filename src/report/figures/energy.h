@@ -18,7 +18,7 @@ std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues&
 double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& wi);
 
 // Weak white furnace [Heitz eq 36], over the whole sphere of reflected directions: min(1, sigma(u) / cos) for a clamped
-// Smith G1, 1 for an unclamped one and for V-cavities [math.md section 5]; over the points above (error below 1 %) for
+// Smith G1, 1 for an unclamped one and for V-cavities [MATH.md section 5]; over the points above (error below 1 %) for
 // the maskings that do not come from a surface.
 double WeakFurnace(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& u);
 

@@ -35,7 +35,7 @@ TEST(EnergyTable, WhiteFurnace) {
 
 Vec3 AtAngle(double theta) { return FromSpherical(theta, 0); }
 
-// Values of an independent quadrature (math.md section 4), alpha 0.5 at theta 0.3, 1 and 1.4; the leaning lobe seen
+// Values of an independent quadrature (MATH.md section 4), alpha 0.5 at theta 0.3, 1 and 1.4; the leaning lobe seen
 // from azimuth 0.6.
 TEST(WeakFurnace, KnownValues) {
   const SlopeNormalDistribution ggx({SlopeKind::kGgx, 0.5, 0.5, 0, 0, 0}),

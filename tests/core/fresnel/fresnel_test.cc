@@ -162,7 +162,7 @@ TEST(FresnelCurve, FollowsSchlick) {
   }
 }
 
-// [math.md 8.4] the closed form where it has digits; and both sides of the same surface.
+// [MATH.md 8.4] the closed form where it has digits; and both sides of the same surface.
 TEST(DielectricMeanReflectance, IsTheClosedForm) {
   EXPECT_EQ(DielectricMeanReflectance(1), 0);
   for (const double n : {1.15, 1.5, 2.4, 4.0}) {

@@ -124,7 +124,7 @@ TEST(SgCrossSection, Laws) {
       EXPECT_LE(front, 1);
       EXPECT_GE(front, u * SgCrossSection(alpha, 1) * (1 - 1e-13));  // so that G1 <= 1
     }
-    // math.md section 2 with the labels of (30) and (32) put right: sigma(1), and (31): sigma(0) = csch(k) I1(k) / 2.
+    // MATH.md section 2 with the labels of (30) and (32) put right: sigma(1), and (31): sigma(0) = csch(k) I1(k) / 2.
     if (k < 300) {
       EXPECT_NEAR(SgCrossSection(alpha, 1), (alpha * alpha - std::exp(k) * (alpha * alpha - 2)) / (4 * std::sinh(k)),
                   1e-12 * (1 + alpha * alpha));
@@ -165,7 +165,7 @@ TEST(SgForms, ErrorBoundsHoldAndAreTight) {
 }
 
 TEST(SgForms, ClaimsOfThePaperAsMeasured) {
-  // math.md section 2: (22) 1e-3 to .0447, (40) 1e-3 to .254, (41) 1e-4 to .3024, (44) 1.03e-3 above 1.
+  // MATH.md section 2: (22) 1e-3 to .0447, (40) 1e-3 to .254, (41) 1e-4 to .3024, (44) 1.03e-3 above 1.
   EXPECT_LT(MaximalError({SgForm::kBeckmann, 0}, 0.044), 1e-3);
   EXPECT_LT(MaximalError({SgForm::kEq40, 0}, 0.253), 1e-3);
   EXPECT_LT(MaximalError({SgForm::kEq41, 0}, 0.302), 1e-4);

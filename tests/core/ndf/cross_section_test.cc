@@ -202,7 +202,7 @@ TEST(CrossSection, LawsForHostileParameters) {
 }
 
 TEST(CrossSection, KagiwadaKalabaEndpoints) {
-  // math.md section 2, [dEon] 27: sigma(1) = (-b - ln(1-b)) / (2 b atanh b), sigma(-1) = (b - ln(1+b)) / (2 b atanh b),
+  // MATH.md section 2, [dEon] 27: sigma(1) = (-b - ln(1-b)) / (2 b atanh b), sigma(-1) = (b - ln(1+b)) / (2 b atanh b),
   // sphere convention.
   for (const double b : {0.05, 0.4, 0.6, 0.99}) {
     const double scale = 2 * b * std::atanh(b);

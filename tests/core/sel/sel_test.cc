@@ -155,7 +155,7 @@ TEST(Sel, LawsForHostileParameters) {
 }
 
 TEST(Sel, OneSidedDerivativesAtEqualAlphas) {
-  // math.md section 1: at alpha = 0.3 and v ~ (.2, .1, .9) the left derivative is 1.237308, the right one 1.130850.
+  // MATH.md section 1: at alpha = 0.3 and v ~ (.2, .1, .9) the left derivative is 1.237308, the right one 1.130850.
   const Vec3 v = Normalized(Vec3{0.2, 0.1, 0.9});
   SelLobeGradient plain, right, left;
   const double k = SelLobe(0.3, 0.3, v, &plain);

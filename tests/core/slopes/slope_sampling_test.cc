@@ -47,7 +47,7 @@ TEST(TruncatedRadius, InvertsTheCumulativeDistribution) {
   }
   EXPECT_EQ(TruncatedRadius(0.3, 0.2, 0.7, 0), 0.2);
   EXPECT_NEAR(TruncatedRadius(0.3, 0.2, 0.7, 1), 0.7, 1e-15);
-  EXPECT_NEAR(TruncatedRadius(0.3, 0.2, 1.7, 0.37), 0.333458, 1e-6);  // math.md section 3
+  EXPECT_NEAR(TruncatedRadius(0.3, 0.2, 1.7, 0.37), 0.333458, 1e-6);  // MATH.md section 3
 }
 
 // 10^2 equal parts of the triangle (n rows of small triangles), expected counts by the closed form.
