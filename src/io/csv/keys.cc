@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/mapping.h"
+#include "lobefit/io/csv/no_value.h"
+#include "lobefit/io/csv/row_conditions.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
+#include "lobefit/measurement/exclusion.h"
 
 namespace lobefit {
 namespace {
@@ -50,6 +55,20 @@ void Set(const InputFile& file, std::size_t line, std::string_view key, std::str
          const std::string& allowed, const std::optional<Value>& value, std::optional<Value>* target) {
   if (!value) FailAtLine(file, line, std::string(key) + " is '" + Excerpt(word) + "'; allowed are " + allowed);
   *target = value;
+}
+
+// Takes the text of an option that the file states for itself. Its parser speaks to whoever typed an option; here it is
+// the file that is wrong, in this line.
+template <class Parse>
+void SetOption(const InputFile& file, std::size_t line, std::string_view word, const Parse& parse,
+               std::string* target) {
+  std::string text(word);
+  try {
+    parse(text);
+  } catch (const UsageError& error) {
+    FailAtLine(file, line, error.what());
+  }
+  *target = std::move(text);
 }
 
 // The kind of value that a word of the option's table or a column's name stands for.
@@ -151,16 +170,22 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
     }
     keys->Fix({Coordinate::kSampleRotation, *degrees, AngleUnit::kDegrees});
   } else if (name == "columns") {
-    keys->columns = std::string(word);
+    // "Columns: incidence, azimuth, value" is prose.
+    if (word.find('=') == std::string_view::npos) return false;
+    SetOption(
+        file, line, word, [](const std::string& text) { ColumnMapping mapping(text); }, &keys->columns);
   } else if (name == "where") {
-    keys->where = std::string(word);
+    SetOption(file, line, word, ParseRowConditions, &keys->where);
   } else if (name == "no-value") {
-    keys->no_value = std::string(word);
+    SetOption(
+        file, line, word, [](const std::string& text) { NoValues marks(text); }, &keys->no_value);
   } else if (name == "exclude") {
-    keys->exclude = std::string(word);
+    SetOption(file, line, word, ParseExclusions, &keys->exclude);
   } else if (name == "value-column") {
     keys->value_column = std::string(word);
   } else if (name == "repeated") {
+    if (!ParseRepeatedRows(word))
+      FailAtLine(file, line, "repeated is '" + Excerpt(word) + "'; allowed are first, mean");
     keys->repeated = std::string(word);
   } else if (!ReadCoordinate(key, word, keys)) {
     // A misspelt key would leave the file read in the wrong unit without a word.

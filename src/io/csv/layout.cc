@@ -9,6 +9,7 @@
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/angles.h"
 #include "lobefit/io/csv/mapping.h"
+#include "lobefit/io/csv/row_conditions.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 
@@ -76,18 +77,13 @@ class LayoutBuilder {
   void FindFilters() {
     const std::string& text = options_.where.empty() ? header_.keys.where : options_.where;
     if (Trim(text).empty()) return;
-    for (const std::string_view item : Split(text, ',')) {
-      const std::size_t at = item.find('=');
-      if (at == std::string_view::npos || Trim(item.substr(0, at)).empty()) {
-        throw UsageError("--where " + Excerpt(text, 100) + ": '" + Excerpt(Trim(item)) +
-                         "' is not COLUMN=VALUE; write it as in pol=s");
-      }
-      const std::size_t column = FindColumn(columns_, item.substr(0, at));
+    for (const RowCondition& condition : ParseRowConditions(text)) {
+      const std::size_t column = FindColumn(columns_, condition.column);
       if (column == columns_.size()) {
-        Fail("no column is named '" + Excerpt(Trim(item.substr(0, at))) +
-             "', which --where asks for; the columns are " + NamesOf(columns_));
+        Fail("no column is named '" + Excerpt(condition.column) + "', which --where asks for; the columns are " +
+             NamesOf(columns_));
       }
-      layout_.filters.push_back({column, ToLower(Trim(item.substr(at + 1)))});
+      layout_.filters.push_back({column, condition.word});
     }
     measurement_->conventions["where"] = Excerpt(text, 80) + (options_.where.empty() ? " (header)" : " (option)");
   }

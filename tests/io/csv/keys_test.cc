@@ -32,6 +32,15 @@ TEST(CsvKeys, WhatResemblesAKeyIsSaid) {
   EXPECT_TRUE(ReadText("# made by: N.N.\n# lobefit.alpha_x: 0.1\n# https://example.org/a-b\n" + kRows).remarks.empty());
 }
 
+// The words of an option that a file states for itself are the file's: its line is named.
+TEST(CsvKeys, FaultsOfStatedOptionsAreOfTheFile) {
+  for (const char* key : {"# columns: theta_i=", "# columns: x=1", "# where: pol", "# no-value: 0,,1",
+                          "# exclude: bogus", "# repeated: often"}) {
+    EXPECT_NE(MessageOf("\n" + std::string(key) + "\n" + kRows).find("line 2: "), std::string::npos) << key;
+  }
+  EXPECT_EQ(ReadText("# columns: incidence, azimuth, viewing, azimuth, value\n" + kRows).samples.size(), 1U);
+}
+
 TEST(Units, AnglesAreUnderstoodOrRefused) {
   const auto radians = [](const char* unit) {
     return ParseAngleUnit(unit) ? RadiansPerUnit(*ParseAngleUnit(unit)) : -1;
