@@ -18,12 +18,12 @@
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/starts.h"
 #include "lobefit/fit/sel/slice.h"
+#include "lobefit/math/vec.h"
 #include "lobefit/measurement/incidence.h"
 
 namespace lobefit {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Excess in mean square that is not worth a parameter: 1 % in root mean square.
 constexpr double kWorthNothing = 0.02;
 // Errors below this share of the measured values' own root mean square are rounding, and equal.

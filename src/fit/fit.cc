@@ -21,14 +21,13 @@
 #include "lobefit/fit/search/search.h"
 #include "lobefit/fit/sel/fit.h"
 #include "lobefit/math/directions.h"
+#include "lobefit/math/vec.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/measurement/isotropy.h"
 #include "lobefit/measurement/noise.h"
 
 namespace lobefit {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Flattened entry names of Layout::Report: "alpha_x", "f0[R]".
 std::vector<std::string> EntryNames(const std::vector<Parameter>& parameters,

@@ -4,11 +4,15 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace lobefit {
 
 inline constexpr double kPi = 3.14159265358979323846264338327950288;
 inline constexpr double kInvPi = 0.318309886183790671537767526745028724;
+inline constexpr double kSqrtPi = 1.77245385090551602729816748334114518;
+inline constexpr double kInvSqrtPi = 0.564189583547756286948079451560772586;
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 template <class T>
 struct Vec3T {

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lobefit/math/statistics.h"
+
 namespace lobefit {
 namespace {
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // A stretch of a scan. White noise of standard deviation 1 has second differences of variance 6, most of them of
 // another sign than the one before; a lobe, however steep, has second differences that keep their sign for long.

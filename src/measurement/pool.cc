@@ -10,6 +10,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/math/statistics.h"
 #include "lobefit/measurement/pair_index.h"
 #include "lobefit/measurement/repeats.h"
 
@@ -42,14 +43,8 @@ void RequireSameKind(const Measurement& a, const Measurement& b) {
 }
 
 template <class T>
-void Join(std::vector<T>* to, std::vector<T>&& from) {
+void MoveBehind(std::vector<T>* to, std::vector<T>&& from) {
   to->insert(to->end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Where some parts state a standard deviation and others do not, theirs is taken to be the middle one.
@@ -63,17 +58,17 @@ void AppendSamples(Samples&& from, Samples* to) {
   // A part without weights counts as the mean of those that have them, which is 1.
   if (to->weight.empty() && !from.weight.empty()) to->weight.assign(to->size(), 1.0);
   if (!to->weight.empty() && from.weight.empty()) from.weight.assign(from.size(), 1.0);
-  Join(&to->wi_x, std::move(from.wi_x));
-  Join(&to->wi_y, std::move(from.wi_y));
-  Join(&to->wi_z, std::move(from.wi_z));
-  Join(&to->wo_x, std::move(from.wo_x));
-  Join(&to->wo_y, std::move(from.wo_y));
-  Join(&to->wo_z, std::move(from.wo_z));
-  for (std::size_t c = 0; c < to->values.size(); ++c) Join(&to->values[c], std::move(from.values[c]));
-  Join(&to->weight, std::move(from.weight));
-  Join(&to->sigma, std::move(from.sigma));
-  Join(&to->solid_angle, std::move(from.solid_angle));
-  Join(&to->origin, std::move(from.origin));
+  MoveBehind(&to->wi_x, std::move(from.wi_x));
+  MoveBehind(&to->wi_y, std::move(from.wi_y));
+  MoveBehind(&to->wi_z, std::move(from.wi_z));
+  MoveBehind(&to->wo_x, std::move(from.wo_x));
+  MoveBehind(&to->wo_y, std::move(from.wo_y));
+  MoveBehind(&to->wo_z, std::move(from.wo_z));
+  for (std::size_t c = 0; c < to->values.size(); ++c) MoveBehind(&to->values[c], std::move(from.values[c]));
+  MoveBehind(&to->weight, std::move(from.weight));
+  MoveBehind(&to->sigma, std::move(from.sigma));
+  MoveBehind(&to->solid_angle, std::move(from.solid_angle));
+  MoveBehind(&to->origin, std::move(from.origin));
 }
 
 // Parts of one wavelength each as channels, ascending; a sample keeps the line of the first part that has it.

@@ -8,17 +8,17 @@ namespace lobefit {
 namespace {
 
 // A Gaussian whose width differs on both sides of its peak.
-double Lobe(double wavelength, double peak, double width_below, double width_above) {
+double SplitBell(double wavelength, double peak, double width_below, double width_above) {
   const double t = (wavelength - peak) / (wavelength < peak ? width_below : width_above);
   return std::exp(-0.5 * t * t);
 }
 
 // Colour matching functions, [Wyman et al. 2013, table 1, multi-lobe fit]; wavelength in nm.
 std::array<double, 3> Observer(double wavelength) {
-  const double x = 1.056 * Lobe(wavelength, 599.8, 37.9, 31.0) + 0.362 * Lobe(wavelength, 442.0, 16.0, 26.7) -
-                   0.065 * Lobe(wavelength, 501.1, 20.4, 26.2);
-  const double y = 0.821 * Lobe(wavelength, 568.8, 46.9, 40.5) + 0.286 * Lobe(wavelength, 530.9, 16.3, 31.1);
-  const double z = 1.217 * Lobe(wavelength, 437.0, 11.8, 36.0) + 0.681 * Lobe(wavelength, 459.0, 26.0, 13.8);
+  const double x = 1.056 * SplitBell(wavelength, 599.8, 37.9, 31.0) + 0.362 * SplitBell(wavelength, 442.0, 16.0, 26.7) -
+                   0.065 * SplitBell(wavelength, 501.1, 20.4, 26.2);
+  const double y = 0.821 * SplitBell(wavelength, 568.8, 46.9, 40.5) + 0.286 * SplitBell(wavelength, 530.9, 16.3, 31.1);
+  const double z = 1.217 * SplitBell(wavelength, 437.0, 11.8, 36.0) + 0.681 * SplitBell(wavelength, 459.0, 26.0, 13.8);
   return {x, y, z};
 }
 

@@ -155,7 +155,6 @@ Vec3 DirectionAt(const double* in) {
 }
 
 ProjectedSlopes ExtendedProjection(const double* slopes, const double* u) {
-  using Real = long double;
   const Real x = u[0], y = u[1], z = u[2], length = std::sqrt(x * x + y * y + z * z);
   const Real c = (z - slopes[3] * x - slopes[4] * y) / length, A = slopes[0] * x / length, B = slopes[1] * y / length;
   const Real q = ((A + B) * (A + B) * (1 + Real{slopes[2]}) + (A - B) * (A - B) * (1 - Real{slopes[2]})) / 2;

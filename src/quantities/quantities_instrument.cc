@@ -16,8 +16,6 @@
 namespace lobefit {
 namespace {
 
-using Real = long double;
-
 void AddEllipsoidAndPair(Quantity* q, std::vector<std::string>* parameters) {
   q->inputs = EllipsoidColumns();
   *parameters = ParameterNames(*q);

@@ -101,7 +101,6 @@ Quantity InterfacedQuantity() {
 
 // s = i.o - i_z o_z in extended precision: a small difference where the azimuths are nearly perpendicular.
 double ExtendedOffset(const double* i, const double* o) {
-  using Real = long double;
   const auto square = [](const double* u) { return Real{u[0]} * u[0] + Real{u[1]} * u[1] + Real{u[2]} * u[2]; };
   return static_cast<double>((Real{i[0]} * o[0] + Real{i[1]} * o[1]) / std::sqrt(square(i) * square(o)));
 }

@@ -49,7 +49,6 @@ Profile ProfileOf(const SplinePointer& spline, const double* q) { return {spline
 // t of a direction below which the slopes have the five parameters `in`, in extended precision: the offset from the
 // mean slope is a small difference near it.
 double ExtendedRadius(const double* in, const double* m) {
-  using Real = long double;
   const Real x = (Real{m[0]} / m[2] + in[3]) / in[0], y = (Real{m[1]} / m[2] + in[4]) / in[1], r = in[2];
   return static_cast<double>(((x - y) * (x - y) / (1 - r) + (x + y) * (x + y) / (1 + r)) / 2);
 }

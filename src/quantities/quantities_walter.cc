@@ -9,12 +9,11 @@
 #include "lobefit/core/masking/lune.h"
 #include "lobefit/core/ndf/off_center.h"
 #include "lobefit/core/ndf/weighted_form.h"
+#include "lobefit/math/vec.h"
 #include "lobefit/quantities/quantity_columns.h"
 
 namespace lobefit {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Quantity OfEllipsoid(const char* name, const char* description, const char* source) {
   Quantity q;
@@ -39,7 +38,6 @@ Quantity EllipsoidDQuantity() {
 
 // c = (A n).(A u) / |A n|^2: its terms cancel where the mean surface is seen edge-on, hence extended precision.
 double MesoCosine(const double* in) {
-  using Real = long double;
   const Real p[5] = {in[0], in[1], in[2], in[3], in[4]};
   const Mat3T<Real> r = EllipsoidRotation(p);
   const Vec3T<Real> u = r * Vec3T<Real>{in[5], in[6], in[7]}, n = {r.row[0].z, r.row[1].z, r.row[2].z};
@@ -93,7 +91,6 @@ Quantity LuneQuantity() {
 
 // Mean slope and Q^-1 as off_center.cc has them, in extended precision: each entry can be a small difference.
 void ExtendedOffCenter(const double* in, double* out) {
-  using Real = long double;
   const Real p[5] = {in[0], in[1], in[2], in[3], in[4]};
   const Mat3T<Real> columns = Transposed(EllipsoidRotation(p));
   const Vec3T<Real>&r1 = columns.row[0], &r2 = columns.row[1], &n = columns.row[2];

@@ -12,6 +12,9 @@
 
 namespace lobefit {
 
+// Of differences of numbers that are nearly equal.
+using Real = long double;
+
 // The parts of Quantities().
 std::vector<Quantity> WalterQuantities();
 std::vector<Quantity> HeitzQuantities();

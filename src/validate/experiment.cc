@@ -9,12 +9,11 @@
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/math/vec.h"
 #include "lobefit/measurement/incidence.h"
 
 namespace lobefit {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Streams of one trial's seed.
 enum TrialStream : std::uint64_t { kMaterial = 100, kNoise = 101 };

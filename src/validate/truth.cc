@@ -54,7 +54,6 @@ Truth TruthOf(const Recipe& recipe, const std::vector<std::string>& channels, co
 }
 
 Material MaterialOf(const Truth& truth) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Material material;
   material.model = truth.model;
   material.channels = truth.channels;

@@ -16,13 +16,13 @@
 namespace lobefit {
 namespace {
 
-struct Case {
+struct MaterialCase {
   const char* name;
   SyntheticCase (*material)();
 };
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+std::ostream& operator<<(std::ostream& out, const MaterialCase& c) { return out << c.name; }
 
-class RoundTrip : public testing::TestWithParam<Case> {
+class RoundTrip : public testing::TestWithParam<MaterialCase> {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::path(testing::TempDir()) / (std::string("round_trip_") + GetParam().name);
@@ -98,8 +98,9 @@ TEST_P(RoundTrip, EachTargetStatesItsErrorAndWhatItLoses) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Materials, RoundTrip,
-                         testing::Values(Case{"tilted", test::Tilted}, Case{"turned", test::Turned},
-                                         Case{"plastic", test::Plastic}, Case{"two_lobes", test::TwoLobes}),
+                         testing::Values(MaterialCase{"tilted", test::Tilted}, MaterialCase{"turned", test::Turned},
+                                         MaterialCase{"plastic", test::Plastic},
+                                         MaterialCase{"two_lobes", test::TwoLobes}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(Conductors, NearestIndexHasTheReflectanceAndIsNearerThanPbrts) {

@@ -35,39 +35,39 @@ SelSlice Slice(double theta_deg, double phi_deg, std::size_t lobes, std::size_t 
   return slice;
 }
 
-struct Case {
+struct TableCase {
   const char* name;
   SelTable table;
   Channels channels;
 };
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+std::ostream& operator<<(std::ostream& out, const TableCase& c) { return out << c.name; }
 
-Case Isotropic() {
+TableCase IsotropicTable() {
   SelTable table = {SelQuantity::kBrdf, true, false, {}};
   for (const double theta : {0., 15., 30., 45., 60., 75.}) table.slices.push_back(Slice(theta, 0, 2, 3));
   return {"isotropic", table, {{"R", "G", "B"}, {}}};
 }
 // One slice along the normal, whose lobes keep to the surface's axes; rings of different azimuths, one of a single one.
-Case Anisotropic() {
+TableCase AnisotropicTable() {
   SelTable table = {SelQuantity::kBrdfCosineO, false, false, {Slice(0, 30, 1, 1)}};
   for (const double phi : {10., 80., 200.}) table.slices.push_back(Slice(25, phi, 1, 1));
   table.slices.push_back(Slice(45, -70, 1, 1));
   for (const double phi : {-170., -20., 60., 120.}) table.slices.push_back(Slice(60, phi, 1, 1));
   return {"anisotropic", table, {{"Y"}, {}}};
 }
-Case Spectral() {
+TableCase SpectralTable() {
   SelTable table = {SelQuantity::kBrdf, false, true, {}};
   for (const double phi : {0., 90., 180., 270.}) table.slices.push_back(Slice(40, phi, 3, 4));
   return {"spectral", table, {{"450nm", "500nm", "550nm", "600nm"}, {450, 500, 550, 600}}};
 }
-Case Narrow() {
-  Case narrow = Isotropic();
+TableCase NarrowTable() {
+  TableCase narrow = IsotropicTable();
   narrow.name = "narrow";
   for (SelSlice& slice : narrow.table.slices) slice.lobes[0] = {0.012, 0.004, 0.01, 0.002, -0.6};
   return narrow;
 }
 
-class SelShaders : public testing::TestWithParam<Case> {
+class SelShaders : public testing::TestWithParam<TableCase> {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::path(testing::TempDir()) / (std::string("sel_shader_") + GetParam().name);
@@ -199,7 +199,8 @@ TEST_P(SelShaders, BoundConesInABrowser) {
   RecordProperty("loosest", std::to_string(loosest));
 }
 
-INSTANTIATE_TEST_SUITE_P(Tables, SelShaders, testing::Values(Isotropic(), Anisotropic(), Spectral(), Narrow()),
+INSTANTIATE_TEST_SUITE_P(Tables, SelShaders,
+                         testing::Values(IsotropicTable(), AnisotropicTable(), SpectralTable(), NarrowTable()),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 }  // namespace

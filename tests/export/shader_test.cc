@@ -22,11 +22,11 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Case {
+struct ShaderCase {
   const char* name;
   SyntheticCase (*material)();
 };
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+std::ostream& operator<<(std::ostream& out, const ShaderCase& c) { return out << c.name; }
 
 SyntheticCase Spectral() {
   SyntheticCase synthetic = OneLobe(Ndf::kEllipsoid, 0.3, 0.1, 4, 5, 10, {0.5, 0.6, 0.7, 0.8}, {0.1, 0.1, 0.1, 0.1});
@@ -69,7 +69,7 @@ SyntheticCase GgxImplicit() {
 // What a text is asked in each pixel.
 constexpr const char* kCall = "vec3 pixel(vec4 a, vec4 b) { return f_of(a.xyz, b.xyz); }\n";
 
-class Shaders : public testing::TestWithParam<Case> {
+class Shaders : public testing::TestWithParam<ShaderCase> {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::path(testing::TempDir()) / (std::string("shader_") + GetParam().name);
@@ -196,11 +196,13 @@ TEST_P(Shaders, GiveTheFitsValuesInABrowser) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Materials, Shaders,
-                         testing::Values(Case{"tilted", test::Tilted}, Case{"two_lobes", test::TwoLobes},
-                                         Case{"spectral", Spectral}, Case{"narrow", Narrow},
-                                         Case{"beckmann_metal", BeckmannMetal}, Case{"beckmann_glass", BeckmannGlass},
-                                         Case{"beckmann_kelemen", BeckmannKelemen},
-                                         Case{"schlick_smith", GgxSchlickSmith}, Case{"implicit", GgxImplicit}),
+                         testing::Values(ShaderCase{"tilted", test::Tilted}, ShaderCase{"two_lobes", test::TwoLobes},
+                                         ShaderCase{"spectral", Spectral}, ShaderCase{"narrow", Narrow},
+                                         ShaderCase{"beckmann_metal", BeckmannMetal},
+                                         ShaderCase{"beckmann_glass", BeckmannGlass},
+                                         ShaderCase{"beckmann_kelemen", BeckmannKelemen},
+                                         ShaderCase{"schlick_smith", GgxSchlickSmith},
+                                         ShaderCase{"implicit", GgxImplicit}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 // Two materials in one shader, and the first by the short name.

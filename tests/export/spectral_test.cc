@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Material Spectral() {
+Material SpectralMaterial() {
   SyntheticCase synthetic = OneLobe(Ndf::kGgx, 0.25, 0.25, 0, 0, 0, {0.5, 0.4, 0.3, 0.35}, {0.1, 0.08, 0.05, 0.06});
   synthetic.channels = {"450nm", "500nm", "550nm", "650nm"};
   Material material = test::MaterialOf(synthetic);
@@ -44,7 +44,7 @@ class SpectralExport : public testing::Test {
 
 TEST_F(SpectralExport, PbrtAndMitsubaHoldSpectra) {
   for (const char* target : {"pbrt", "mitsuba"}) {
-    const ExportResult result = Export(Spectral(), target);
+    const ExportResult result = Export(SpectralMaterial(), target);
     const ImportedMaterial back = ImportMaterial(result.files[0]);
     EXPECT_EQ(back.channels.wavelengths_nm, (std::vector<double>{450, 500, 550, 650})) << target;
     EXPECT_EQ(back.channels.names[3], "650nm");
@@ -60,7 +60,7 @@ TEST_F(SpectralExport, PbrtAndMitsubaHoldSpectra) {
 }
 
 TEST_F(SpectralExport, OtherTextsGetTheFitsOwnRgb) {
-  const Material material = Spectral();
+  const Material material = SpectralMaterial();
   const FittedBrdf fit(material);
   const ChannelMap map = RgbMapOf(fit);
   // Schlick's term and the diffuse part are linear, so that the R, G, B of the parameters are those of f_r.
@@ -94,7 +94,7 @@ TEST_F(SpectralExport, OtherTextsGetTheFitsOwnRgb) {
   Material one = test::MaterialOf(laser);
   one.wavelengths_nm = {633};
   EXPECT_LT(Export(one, "gltf").error.uniform.median, 0.2);
-  Material infrared = Spectral();
+  Material infrared = SpectralMaterial();
   infrared.channels = {"850nm", "900nm", "950nm", "1000nm"};
   infrared.wavelengths_nm = {850, 900, 950, 1000};
   EXPECT_THROW(Export(infrared, "gltf"), std::exception);

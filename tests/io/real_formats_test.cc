@@ -13,7 +13,7 @@
 namespace lobefit {
 namespace {
 
-const std::filesystem::path kData = test::SourceDir() / ".." / "shared" / "data";
+const std::filesystem::path kRealFiles = test::SourceDir() / ".." / "shared" / "data";
 
 #define SKIP_WITHOUT(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << (path) << " is not there"
@@ -38,7 +38,7 @@ double FromMirror(const Vec3& wi, const Vec3& wo) {
 }
 
 TEST(RealFormats, CornellPaintHasItsDirectionsAndWavelengths) {
-  const auto path = kData / "cornell" / "garnet_red.brdf";
+  const auto path = kRealFiles / "cornell" / "garnet_red.brdf";
   SKIP_WITHOUT(path);
   const Measurement m = ReadMeasurement(path);
   EXPECT_EQ(m.format, "cornell");
@@ -57,7 +57,7 @@ TEST(RealFormats, CornellPaintHasItsDirectionsAndWavelengths) {
 }
 
 TEST(RealFormats, AltaSheetingIsRetroReflective) {
-  const auto path = kData / "alta" / "retro-3M-jaune.dat";
+  const auto path = kRealFiles / "alta" / "retro-3M-jaune.dat";
   SKIP_WITHOUT(path);
   const Measurement m = ReadMeasurement(path);
   EXPECT_EQ(m.format, "alta");
@@ -91,7 +91,7 @@ TEST(RealFormats, AltaSheetingIsRetroReflective) {
 }
 
 TEST(RealFormats, ZemaxCoatingPeaksInForwardScatter) {
-  const auto path = kData / "rt300s" / "AnoBlackNiTEonSteel.bsdf";
+  const auto path = kRealFiles / "rt300s" / "AnoBlackNiTEonSteel.bsdf";
   SKIP_WITHOUT(path);
   const Measurement m = ReadMeasurement(path);
   EXPECT_EQ(m.format, "zemax");
@@ -110,8 +110,8 @@ TEST(RealFormats, ZemaxCoatingPeaksInForwardScatter) {
 
 // The same coating as rows of the instrument and as a Zemax grid: at normal-plane angles both files give the same f_r.
 TEST(RealFormats, ZemaxGridAgreesWithTheInstrumentsRows) {
-  const auto grid_path = kData / "rt300s" / "AnoBlackNiTEonSteel.bsdf";
-  const auto rows_path = kData / "rt300s" / "NiTE_on_steel_v1o0A_20250915.csv";
+  const auto grid_path = kRealFiles / "rt300s" / "AnoBlackNiTEonSteel.bsdf";
+  const auto rows_path = kRealFiles / "rt300s" / "NiTE_on_steel_v1o0A_20250915.csv";
   SKIP_WITHOUT(grid_path);
   SKIP_WITHOUT(rows_path);
   const Measurement grid = ReadMeasurement(grid_path), rows = ReadMeasurement(rows_path);
@@ -133,7 +133,7 @@ TEST(RealFormats, ZemaxGridAgreesWithTheInstrumentsRows) {
 }
 
 TEST(RealFormats, MbsdfPaintHasItsCells) {
-  const auto path = kData / "mbsdf" / "carpaint_blue.mbsdf";
+  const auto path = kRealFiles / "mbsdf" / "carpaint_blue.mbsdf";
   SKIP_WITHOUT(path);
   const Measurement m = ReadMeasurement(path);
   EXPECT_EQ(m.format, "mbsdf");
@@ -149,7 +149,7 @@ TEST(RealFormats, MbsdfPaintHasItsCells) {
 }
 
 TEST(RealFormats, KlemsFabricHasBothSidesAndAStatedAlbedo) {
-  const auto path = kData / "klems" / "mechoshade6216_klems_aniso_high.xml";
+  const auto path = kRealFiles / "klems" / "mechoshade6216_klems_aniso_high.xml";
   SKIP_WITHOUT(path);
   for (const Side side : {Side::kFront, Side::kBack}) {
     ReadOptions options;

@@ -1,8 +1,8 @@
 // Round trips: model -> writer -> reader -> the model's values at the directions that were read.
 #include <cmath>
 
+#include "tests/io/rgb_material.h"
 #include "tests/support/temporary_file.h"
-#include "tests/support/test_brdf.h"
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
@@ -16,16 +16,6 @@
 
 namespace lobefit {
 namespace {
-
-const Channels kRgb = {{"R", "G", "B"}, {}};
-
-BrdfFunction Rgb(const TestBrdf& brdf) {
-  return [brdf](const Vec3& wi, const Vec3& wo, double* values) {
-    values[0] = brdf(wi, wo);
-    values[1] = values[0] / 2;
-    values[2] = values[0] / 4;
-  };
-}
 
 TestBrdf Isotropic() {
   TestBrdf brdf;
@@ -65,17 +55,17 @@ void ExpectModel(const Measurement& m, const TestBrdf& brdf, double tolerance, s
 TEST(WriteCsv, RoundTrip) {
   const TestBrdf brdf;
   const TemporaryFile file;
-  WriteCsv(Rows(brdf, kRgb), {"lobefit.alpha_x: 0.15"}, file.path());
+  WriteCsv(Rows(brdf, kThreeChannels), {"lobefit.alpha_x: 0.15"}, file.path());
   ExpectModel(ReadMeasurement(file.path()), brdf, 1e-12, 324);
 }
 
 TEST(WriteAlta, RoundTrip) {
   const TestBrdf brdf;
   const TemporaryFile file;
-  WriteAlta(Rows(brdf, kRgb), file.path());
+  WriteAlta(Rows(brdf, kThreeChannels), file.path());
   const Measurement m = ReadMeasurement(file.path());
   EXPECT_EQ(m.format, "alta");
-  EXPECT_EQ(m.channels.names, kRgb.names);
+  EXPECT_EQ(m.channels.names, kThreeChannels.names);
   ExpectModel(m, brdf, 1e-12, 324);
 }
 
@@ -101,7 +91,7 @@ TEST(WriteMountain, OneFileAnIncidence) {
 TEST(WriteMerl, RoundTripAtBothCellPositions) {
   for (const CellPosition cell : {CellPosition::kCentre, CellPosition::kEdge}) {
     const TemporaryFile file;
-    WriteMerl(Rgb(Isotropic()), kRgb, {cell, 1e-3}, file.path());
+    WriteMerl(Rgb(Isotropic()), kThreeChannels, {cell, 1e-3}, file.path());
     ReadOptions options;
     options.merl_cell = cell;
     const Measurement m = ReadMeasurement(file.path(), options);
@@ -117,7 +107,7 @@ TEST(WriteMerl, RefusesWhatTheTableCannotHold) {
     TestBrdf brdf = Isotropic();
     (tilt == 0 ? brdf.alpha_x : brdf.tilt) = tilt == 0 ? 0.31 : tilt;
     try {
-      WriteMerl(Rgb(brdf), kRgb, {}, file.path());
+      WriteMerl(Rgb(brdf), kThreeChannels, {}, file.path());
       FAIL() << tilt;
     } catch (const UsageError& error) {
       EXPECT_NE(std::string(error.what()).find("turns about its normal"), std::string::npos);
@@ -150,7 +140,7 @@ TEST(WriteTensorTree, ColoursAndMergedCellsStayWithinTheTolerance) {
   const TemporaryFile file;
   TensorTreeOptions options;
   options.log2_resolution = 4;
-  WriteTensorTree(Rgb(brdf), kRgb, options, file.path());
+  WriteTensorTree(Rgb(brdf), kThreeChannels, options, file.path());
   const Measurement m = ReadMeasurement(file.path());
   EXPECT_EQ(m.channels.names, (std::vector<std::string>{"R", "G", "B"}));
   EXPECT_LT(m.samples.size(), 65536U);
@@ -174,7 +164,7 @@ TEST(WriteTensorTree, RankAndBlocksThatRadianceReads) {
           values[0] = red / kPi;
           values[1] = values[2] = green / kPi;
         },
-        kRgb, options, file.path());
+        kThreeChannels, options, file.path());
     return std::string(MappedFile(file.path()).bytes());
   };
   EXPECT_NE(text(0.2, 0.1).find("TensorTree4"), std::string::npos);

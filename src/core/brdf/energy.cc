@@ -7,8 +7,6 @@
 namespace lobefit {
 namespace {
 
-constexpr std::size_t kMax = kMaxDistributionParameters;
-
 // int w(m) D(m) dm over the visible normals and the integral of its gradient; `weight` gives w and, if asked, dw.
 template <class Weight>
 double IntegrateWithD(const NormalDistribution& distribution, const Vec3& wo, VisibleNormals normals,
@@ -20,14 +18,14 @@ double IntegrateWithD(const NormalDistribution& distribution, const Vec3& wo, Vi
   }
   const auto count = static_cast<std::size_t>(distribution.parameters());
   const auto f = [&](const Vec3& m) {
-    std::array<double, kMax> dD, dw{};
+    std::array<double, kMaxDistributionParameters> dD, dw{};
     const double D = distribution.D(m, dD.data()), w = weight(m, dw.data());
-    std::array<double, kMax + 1> value{};
+    std::array<double, kMaxDistributionParameters + 1> value{};
     value[0] = w * D;
     for (std::size_t k = 0; k < count; ++k) value[1 + k] = w * dD[k] + dw[k] * D;
     return value;
   };
-  const auto integral = IntegrateVisibleNormals<kMax + 1>(polar, f, tolerance);
+  const auto integral = IntegrateVisibleNormals<kMaxDistributionParameters + 1>(polar, f, tolerance);
   std::copy_n(integral.begin() + 1, count, gradient);
   return integral[0];
 }
@@ -118,7 +116,7 @@ double MeanVisibleFresnel(const NormalDistribution& distribution, const FresnelO
     return fresnel(std::min(1.0, cos_d)) * cos_d;
   };
   const double integral = IntegrateWithD(distribution, wo, VisibleNormals::kAll, weight, gradient, tolerance);
-  double dsigma[kMax];
+  double dsigma[kMaxDistributionParameters];
   const double sigma = distribution.Sigma(wo, gradient != nullptr ? dsigma : nullptr);
   const double value = integral / sigma;
   if (gradient != nullptr) {

@@ -13,7 +13,7 @@ struct ShapeRow {
 };
 // The ranges: below alpha = 1e-4 a lobe is a mirror for every instrument; above 1 the axis called "1" is no longer the
 // longest.
-constexpr ShapeRow kShape[] = {
+constexpr ShapeRow kShapeRows[] = {
     {"alpha_x", "1", 1e-4, 1, "roughness along the first axis of the ellipsoid"},
     {"alpha_y", "1", 1e-4, 1, "roughness along the second axis"},
     {"theta_x", "deg", -kPi / 2, kPi / 2, "tilt of the lobe about x (positive leans it to +y)"},
@@ -114,7 +114,7 @@ std::vector<Parameter> Parameters(const Model& model) {
     const NdfFamily family = FamilyOf(lobe.ndf);
     const bool sphere = family == NdfFamily::kKagiwadaKalaba || family == NdfFamily::kSphericalGaussian;
     for (std::size_t i = 0; i < kShapeParameters; ++i) {
-      const ShapeRow& row = kShape[i];
+      const ShapeRow& row = kShapeRows[i];
       const bool is_angle = std::string_view(row.unit) == "deg";
       const std::string name = prefix + row.name;
       parameters.push_back({name, name + (is_angle ? "_deg" : ""), row.unit, row.low,

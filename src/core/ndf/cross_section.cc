@@ -1,15 +1,11 @@
 #include "lobefit/core/ndf/cross_section.h"
 
+#include "lobefit/core/ndf/store.h"
 #include "lobefit/math/special.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 namespace {
-
-constexpr double kInvSqrtPi = 0.564189583547756286948079451560772586;
-
-void Store(double* target, double value) {
-  if (target != nullptr) *target = value;
-}
 
 // 1 - x^2 - y^2 with one rounding: squares and sums with their errors, so that the edge of the band (where the result
 // is 0) is as exact as the inputs.

@@ -7,16 +7,12 @@
 #include <vector>
 
 #include "lobefit/core/ndf/cross_section.h"
+#include "lobefit/core/ndf/store.h"
 #include "lobefit/math/special.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 namespace {
-
-constexpr double kSqrtPi = 1.77245385090551602729816748334114518;
-
-void Store(double* target, double value) {
-  if (target != nullptr) *target = value;
-}
 
 // k = 2 / alpha^2 and dk / dalpha.
 struct Sharpness {

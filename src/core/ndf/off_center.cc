@@ -9,11 +9,10 @@
 #include "lobefit/core/ndf/canonical_axes.h"
 #include "lobefit/core/ndf/principal_axes.h"
 #include "lobefit/core/ndf/weighted_form.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // M = A^T A and its cofactors [[k11, -k12], [-k12, k22]] of the slope part, with gradients in the ellipsoid's
 // parameters.

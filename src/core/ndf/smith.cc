@@ -3,11 +3,10 @@
 #include <algorithm>
 
 #include "lobefit/math/special.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 namespace {
-
-constexpr double kInvSqrtPi = 0.564189583547756286948079451560772586;
 
 // x - p1 q1 - p2 q2, as if computed in twice the precision and rounded once.
 double MinusProducts(double x, double p1, double q1, double p2, double q2) {

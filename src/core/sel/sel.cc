@@ -18,7 +18,7 @@ struct LargerSquare {
 LargerSquare LargerAlphaSquare(double alpha_x, double alpha_y, SelKink kink) {
   const double larger = std::fmax(alpha_x, alpha_y);
   LargerSquare result{larger * larger, 0, 0};
-  if (alpha_x == alpha_y && kink == SelKink::kNan) {
+  if (alpha_x == alpha_y && kink == SelKink::kNone) {
     result.da_dx = result.da_dy = std::numeric_limits<double>::quiet_NaN();
   } else if (alpha_x > alpha_y || (alpha_x == alpha_y && kink == SelKink::kAlphaXLarger)) {
     result.da_dx = 2 * larger;

@@ -18,7 +18,7 @@ namespace lobefit {
 // or the one-sided gradient of the side on which the named one is the larger. The right derivative by alpha_x is
 // dalpha_x of kAlphaXLarger, the left one that of kAlphaYLarger. A solver that crosses the kink should ask for one side
 // and never for NaN.
-enum class SelKink { kNan, kAlphaXLarger, kAlphaYLarger };
+enum class SelKink { kNone, kAlphaXLarger, kAlphaYLarger };
 
 // Squared spheroidal lobe 4 a^4 / ((1 - cos) + a^2 (1 + cos))^2 at the angle theta from the axis, [SEL] first equation
 // (unnumbered), as a^4 / (sin^2(theta/2) + a^2 cos^2(theta/2))^2, which does not cancel. alpha in (0, 1], theta in [0,
@@ -39,7 +39,7 @@ struct SelLobeGradient {
 // + s))^2; below it s = U - v_z: K = (2 / (A q/s + s/A))^2. The printed sum (U - v_z) + A (U + v_z) loses up to 8
 // digits near the axis.
 double SelLobe(double alpha_x, double alpha_y, const Vec3& v, SelLobeGradient* gradient = nullptr,
-               SelKink kink = SelKink::kNan);
+               SelKink kink = SelKink::kNone);
 template <class T>
 T SelLobeFormula(const T& alpha_x, const T& alpha_y, const Vec3T<T>& v);
 
@@ -54,14 +54,14 @@ struct SelGradient {
 // K at the unit world direction w of a lobe with rotation vector `rotation` (radians; rows of the matrix are the lobe's
 // axes).
 double Sel(double alpha_x, double alpha_y, const Vec3& rotation, const Vec3& w, SelGradient* gradient = nullptr,
-           SelKink kink = SelKink::kNan);
+           SelKink kink = SelKink::kNone);
 
 // Integral of K over the sphere: 4 pi alpha^2 for equal alphas, larger than 4 pi alpha_x alpha_y otherwise. In closed
 // form by Carlson's R_F and R_D: 2 pi alpha_x alpha_y c (2 R_F - 2/3 R_D b^2), c = (1+A)/2, b = (1-A)/2, arguments
 // (alpha_x^2, alpha_y^2, c^2): twice the Newtonian potential of the solid ellipsoid at the origin. Not in the paper
 // (MATH.md section 1).
 double SelIntegral(double alpha_x, double alpha_y, double* dintegral_dalpha_x = nullptr,
-                   double* dintegral_dalpha_y = nullptr, SelKink kink = SelKink::kNan);
+                   double* dintegral_dalpha_y = nullptr, SelKink kink = SelKink::kNone);
 
 // The ellipsoid itself, in lobe space.
 struct SelEllipsoid {
@@ -77,7 +77,7 @@ struct SelHit {
 // near.t <= far.t; false, and nothing written, where the line misses or only touches. From the origin of lobe space,
 // far.t = sqrt(K(direction)).
 bool SelIntersect(double alpha_x, double alpha_y, const Vec3& origin, const Vec3& direction, SelHit* near, SelHit* far,
-                  SelKink kink = SelKink::kNan);
+                  SelKink kink = SelKink::kNone);
 
 template <class T>
 T SslFormula(const T& alpha, const T& theta) {

@@ -72,7 +72,7 @@ double SelCosineIntegral(double alpha_x, double alpha_y, const Vec3& rotation, c
   const Mat3 r = RotationMatrix(rotation);
   const Vec3 n = r * normal;
   // The integrand needs finite derivatives for the error estimate; NaN is given back at the end if it was asked for.
-  const bool undefined = alpha_x == alpha_y && kink == SelKink::kNan;
+  const bool undefined = alpha_x == alpha_y && kink == SelKink::kNone;
   const SelKink side = undefined ? SelKink::kAlphaXLarger : kink;
   QuadratureOptions inner = options;
   inner.relative = 0.1 * options.relative;

@@ -17,7 +17,7 @@ namespace lobefit {
 // known angle. A relative error of options.relative is asked of value and gradient alike; about 3e4 evaluations at
 // 1e-9. Not in [SEL].
 double SelCosineIntegral(double alpha_x, double alpha_y, const Vec3& rotation, const Vec3& normal,
-                         SelGradient* gradient = nullptr, SelKink kink = SelKink::kNan,
+                         SelGradient* gradient = nullptr, SelKink kink = SelKink::kNone,
                          const QuadratureOptions& options = {1e-9, 0, 2000});
 
 }  // namespace lobefit

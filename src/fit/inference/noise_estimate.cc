@@ -103,7 +103,7 @@ std::vector<Bin> Bins(std::vector<PseudoResidual> pairs) {
   return bins;
 }
 
-double Misfit(const std::vector<Bin>& bins, double ln_floor, double ln_relative) {
+double MisfitOf(const std::vector<Bin>& bins, double ln_floor, double ln_relative) {
   double sum = 0;
   for (const Bin& bin : bins) {
     const double gap = std::log(bin.deviation / std::hypot(std::exp(ln_floor), std::exp(ln_relative) * bin.level));
@@ -137,13 +137,13 @@ std::optional<NoiseModel> EstimateNoise(const Samples& samples, const Incidences
   // brightest.
   double at[2] = {std::log(bins.front().deviation),
                   std::log(bins.back().deviation / std::max(bins.back().level, rounding))};
-  double best = Misfit(bins, at[0], at[1]);
+  double best = MisfitOf(bins, at[0], at[1]);
   for (double step = 0.5; step > 1e-3;) {
     bool moved = false;
     for (const auto& [k, sign] : {std::pair{0, 1}, {0, -1}, {1, 1}, {1, -1}}) {
       double tried[2] = {at[0], at[1]};
       tried[k] += sign * step;
-      const double misfit = Misfit(bins, tried[0], tried[1]);
+      const double misfit = MisfitOf(bins, tried[0], tried[1]);
       if (!(misfit < best)) continue;
       best = misfit;
       at[k] = tried[k];

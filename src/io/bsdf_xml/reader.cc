@@ -180,10 +180,6 @@ TensorTree ReadTree(const XmlFile& xml, const XmlBlock& block, int rank) {
   });
 }
 
-Vec3 OnHemisphere(const Vec2& disk) {
-  return {disk.x, disk.y, std::sqrt(std::max(0.0, 1 - disk.x * disk.x - disk.y * disk.y))};
-}
-
 // Projected incident solid angle of a cell along the first axis of an isotropic tree, sin(theta_i) = 1 - 2 u; the part
 // u > 1/2 of the axis is not used.
 struct Ring {

@@ -17,6 +17,10 @@ bool IsSeparator(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r
 
 }  // namespace
 
+Vec3 OnHemisphere(const Vec2& disk) {
+  return {disk.x, disk.y, std::sqrt(std::max(0.0, 1 - disk.x * disk.x - disk.y * disk.y))};
+}
+
 Vec2 SquareToDisk(const Vec2& square) {
   const double a = 2 * square.x - 1, b = 2 * square.y - 1;
   if (a == 0 && b == 0) return {0, 0};

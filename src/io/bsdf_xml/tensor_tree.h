@@ -16,6 +16,8 @@ namespace lobefit {
 // everywhere, so that a cell of the square is a cell of projected solid angle.
 Vec2 SquareToDisk(const Vec2& square);
 Vec2 DiskToSquare(const Vec2& disk);
+// The direction above a point of the disk.
+Vec3 OnHemisphere(const Vec2& disk);
 
 class TensorTree {
  public:

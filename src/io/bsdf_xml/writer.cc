@@ -18,10 +18,6 @@
 namespace lobefit {
 namespace {
 
-Vec3 OnHemisphere(const Vec2& disk) {
-  return {disk.x, disk.y, std::sqrt(std::max(0.0, 1 - disk.x * disk.x - disk.y * disk.y))};
-}
-
 // All cells of the finest level, last axis fastest; values[block][cell].
 class Grid {
  public:

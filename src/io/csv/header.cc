@@ -24,7 +24,7 @@ struct Line {
   bool comment = false;
 };
 
-Fields Split(std::string_view text, char separator) {
+Fields SplitFields(std::string_view text, char separator) {
   Fields fields;
   SplitCsvLine(text, separator, &fields);
   return fields;
@@ -173,7 +173,7 @@ class HeaderReader {
     for (const char candidate : candidates) {
       for (std::size_t i = 0; i < lines_.size(); ++i) {
         if (lines_[i].comment) continue;
-        const Fields fields = Split(lines_[i].text, candidate);
+        const Fields fields = SplitFields(lines_[i].text, candidate);
         if (fields.size() < 2 || !IsData(fields, candidate)) continue;
         header_.separator = candidate;
         data_ = i;
@@ -197,7 +197,7 @@ class HeaderReader {
     std::string storage;
     for (std::size_t i = data_; i < lines_.size(); ++i) {
       if (lines_[i].comment) continue;
-      for (const std::string_view raw : Split(lines_[i].text, header_.separator)) {
+      for (const std::string_view raw : SplitFields(lines_[i].text, header_.separator)) {
         const std::string_view field = Unquoted(raw, &storage);
         if (HasThousandsSeparator(field)) {
           FailAtLine(file_, lines_[i].number,
@@ -232,7 +232,7 @@ class HeaderReader {
 
   bool TryNames(std::size_t at) {
     const std::string_view text = lines_[at].comment ? CommentText(lines_[at].text) : lines_[at].text;
-    const Fields fields = Split(text, header_.separator);
+    const Fields fields = SplitFields(text, header_.separator);
     if (fields.size() < 2 || (fields.size() == 2 && IsNumeric(fields[1], header_.separator))) return false;
     std::vector<CsvColumn> columns = Classify(fields);
     CsvColumn rows;
@@ -251,7 +251,7 @@ class HeaderReader {
                   : 0;
     }
     if (lone > 1 && at > 0 && !lines_[at - 1].comment) {
-      const std::vector<std::string> names = Combined(Split(lines_[at - 1].text, header_.separator), fields);
+      const std::vector<std::string> names = Combined(SplitFields(lines_[at - 1].text, header_.separator), fields);
       for (std::size_t i = 0; i < columns.size(); ++i) {
         const CsvColumn combined = ClassifyColumn(names[i]);
         if (combined.role == ColumnRole::kCoordinate) columns[i] = combined;
@@ -263,7 +263,7 @@ class HeaderReader {
   }
 
   bool FindNames() {
-    const std::size_t fields = data_ < lines_.size() ? Split(lines_[data_].text, header_.separator).size() : 0;
+    const std::size_t fields = data_ < lines_.size() ? SplitFields(lines_[data_].text, header_.separator).size() : 0;
     for (const bool comments : {false, true}) {
       for (std::size_t i = data_; i-- > 0;) {
         if (lines_[i].comment != comments || !TryNames(i)) continue;
@@ -277,7 +277,7 @@ class HeaderReader {
     }
     // A line of numbers under an empty corner, and the rows below it.
     if (data_ + 1 < lines_.size()) {
-      const Fields names = Split(lines_[data_].text, header_.separator);
+      const Fields names = SplitFields(lines_[data_].text, header_.separator);
       if (Trim(names[0]).empty() && mapping_.head()) {
         std::vector<CsvColumn> columns = Classify(names);
         mapping_.Rename(&columns);
@@ -289,7 +289,7 @@ class HeaderReader {
     // No line names a direction: the last line of words before the data then says what there is.
     for (std::size_t i = data_; i-- > 0;) {
       if (lines_[i].comment) continue;
-      const Fields names = Split(lines_[i].text, header_.separator);
+      const Fields names = SplitFields(lines_[i].text, header_.separator);
       if (names.size() < 2 && data_ < lines_.size()) continue;
       if (std::all_of(names.begin(), names.end(), IsUnitOrBlank)) continue;
       std::vector<CsvColumn> columns = Classify(names);
@@ -309,7 +309,7 @@ class HeaderReader {
   void ReadTitleKeys() {
     for (std::size_t i = 0; i < data_; ++i) {
       if (i != names_ && !lines_[i].comment)
-        ReadKey(file_, lines_[i].number, Split(lines_[i].text, header_.separator), &header_.keys);
+        ReadKey(file_, lines_[i].number, SplitFields(lines_[i].text, header_.separator), &header_.keys);
     }
   }
 
@@ -317,7 +317,7 @@ class HeaderReader {
     header_.first_data_line = data_ < lines_.size() ? lines_[data_].number : lines_[names_].number + 1;
     for (std::size_t i = names_ + 1; i < data_; ++i) {
       if (lines_[i].comment) continue;
-      const Fields units = Split(lines_[i].text, header_.separator);
+      const Fields units = SplitFields(lines_[i].text, header_.separator);
       if (units.size() > header_.columns.size() + 1 || !std::all_of(units.begin(), units.end(), IsUnitOrBlank))
         continue;
       std::string storage;
@@ -332,7 +332,7 @@ class HeaderReader {
     for (std::size_t i = data_; i < lines_.size() && header_.first_rows.size() < kFirstRows; ++i) {
       if (lines_[i].comment) continue;
       std::vector<std::string> row;
-      for (const std::string_view field : Split(lines_[i].text, header_.separator))
+      for (const std::string_view field : SplitFields(lines_[i].text, header_.separator))
         row.emplace_back(Unquoted(field, &storage));
       header_.first_rows.push_back(std::move(row));
     }

@@ -173,12 +173,12 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
     // "Columns: incidence, azimuth, value" is prose.
     if (word.find('=') == std::string_view::npos) return false;
     SetOption(
-        file, line, word, [](const std::string& text) { ColumnMapping mapping(text); }, &keys->columns);
+        file, line, word, [](const std::string& words) { ColumnMapping mapping(words); }, &keys->columns);
   } else if (name == "where") {
     SetOption(file, line, word, ParseRowConditions, &keys->where);
   } else if (name == "no-value") {
     SetOption(
-        file, line, word, [](const std::string& text) { NoValues marks(text); }, &keys->no_value);
+        file, line, word, [](const std::string& words) { NoValues marks(words); }, &keys->no_value);
   } else if (name == "exclude") {
     SetOption(file, line, word, ParseExclusions, &keys->exclude);
   } else if (name == "value-column") {

@@ -18,7 +18,7 @@ struct Spelling {
 };
 
 template <class Table>
-auto Find(const Table& table, std::string_view word) -> std::optional<decltype(table[0].value)> {
+auto FindSpelling(const Table& table, std::string_view word) -> std::optional<decltype(table[0].value)> {
   for (const auto& entry : table) {
     if (entry.word == word) return entry.value;
   }
@@ -183,7 +183,7 @@ std::string PlainUnit(std::string_view unit) {
   return ToLower(plain);
 }
 
-std::optional<AngleUnit> ParseAngleUnit(std::string_view unit) { return Find(kAngles, PlainUnit(unit)); }
+std::optional<AngleUnit> ParseAngleUnit(std::string_view unit) { return FindSpelling(kAngles, PlainUnit(unit)); }
 
 std::optional<ValueScale> ParseValueScale(std::string_view unit) {
   using Form = ValueScale::Form;
@@ -233,7 +233,9 @@ std::optional<ValueScale> ParseValueScale(std::string_view unit) {
   return std::nullopt;
 }
 
-std::optional<WavelengthUnit> ParseWavelengthUnit(std::string_view unit) { return Find(kWavelengths, PlainUnit(unit)); }
+std::optional<WavelengthUnit> ParseWavelengthUnit(std::string_view unit) {
+  return FindSpelling(kWavelengths, PlainUnit(unit));
+}
 
 double RadiansPerUnit(AngleUnit unit) {
   switch (unit) {

@@ -131,14 +131,14 @@ TEST(GgxFactorArrays, HaveTheBitsOfTheScalarPathOnEveryTarget) {
 }
 
 // The definitions in slope space (slope_ndf.h) with Jets in the five coordinates.
-using Jet = ceres::Jet<double, 5>;
+using LobeJet = ceres::Jet<double, 5>;
 
-Jet SpecularFormula(const Jet* v, const Vec3& wi, const Vec3& wo, Masking masking) {
-  const auto constant = [](const Vec3& w) { return Vec3T<Jet>{Jet(w.x), Jet(w.y), Jet(w.z)}; };
-  Jet xi = SlopeSigmaFormula(v, constant(wi)), xo = SlopeSigmaFormula(v, constant(wo));
-  if (masking != Masking::kSmithUnclamped && xi < wi.z) xi = Jet(wi.z);
-  if (masking != Masking::kSmithUnclamped && xo < wo.z) xo = Jet(wo.z);
-  const Jet both = masking == Masking::kSmithHeight ? xi * wo.z + (xo - wo.z) * wi.z : xi * xo;
+LobeJet SpecularFormula(const LobeJet* v, const Vec3& wi, const Vec3& wo, Masking masking) {
+  const auto constant = [](const Vec3& w) { return Vec3T<LobeJet>{LobeJet(w.x), LobeJet(w.y), LobeJet(w.z)}; };
+  LobeJet xi = SlopeSigmaFormula(v, constant(wi)), xo = SlopeSigmaFormula(v, constant(wo));
+  if (masking != Masking::kSmithUnclamped && xi < wi.z) xi = LobeJet(wi.z);
+  if (masking != Masking::kSmithUnclamped && xo < wo.z) xo = LobeJet(wo.z);
+  const LobeJet both = masking == Masking::kSmithHeight ? xi * wo.z + (xo - wo.z) * wi.z : xi * xo;
   return SlopeDFormula(v, constant(Normalized(wi + wo))) / (4.0 * both);
 }
 
@@ -148,8 +148,8 @@ TEST(GgxLobe, AgreesWithJets) {
   for (int trial = 0; trial < 400; ++trial) {
     const Ellipsoid e = random.Hostile();
     const SlopeCoordinates shape = SlopeCoordinatesFromEllipsoid(e);
-    Jet v[5];
-    for (int j = 0; j < 5; ++j) v[j] = Jet(shape.v[j], j);
+    LobeJet v[5];
+    for (int j = 0; j < 5; ++j) v[j] = LobeJet(shape.v[j], j);
     const Samples samples = HostileSamples(e, &random, 10);
     for (std::size_t k = 0; k < samples.size(); ++k) {
       const Vec3 wi = samples.I(k), wo = samples.O(k);
@@ -161,7 +161,7 @@ TEST(GgxLobe, AgreesWithJets) {
       for (const Masking masking : kMaskings) {
         double g[5], cos_d = 0;
         const double value = GgxLobe(wi, wo, shape, masking, &cos_d, g);
-        const Jet expected = SpecularFormula(v, wi, wo, masking);
+        const LobeJet expected = SpecularFormula(v, wi, wo, masking);
         EXPECT_NEAR(value, expected.a, (1e-12 + rounding) * expected.a);
         ExpectSameGradient(g, expected.v.data(), 5, 1e-10 + rounding, value);
         // The oracle's wi + wo cancels where the two are nearly opposite.
@@ -178,17 +178,17 @@ TEST(GgxFactors, AgreeWithJetsAndTheEllipsoid) {
   for (int trial = 0; trial < 2000; ++trial) {
     const Ellipsoid e = random.Moderate();
     const SlopeCoordinates shape = SlopeCoordinatesFromEllipsoid(e);
-    Jet v[5];
-    for (int j = 0; j < 5; ++j) v[j] = Jet(shape.v[j], j);
+    LobeJet v[5];
+    for (int j = 0; j < 5; ++j) v[j] = LobeJet(shape.v[j], j);
     const Vec3 m = trial % 2 == 0 ? random.NearLobe(e) : random.Upper(), u = random.Upper();
     double g[5];
     const double d = GgxD(m, shape, g);
-    const Jet jet_d = SlopeDFormula(v, {Jet(m.x), Jet(m.y), Jet(m.z)});
+    const LobeJet jet_d = SlopeDFormula(v, {LobeJet(m.x), LobeJet(m.y), LobeJet(m.z)});
     EXPECT_NEAR(d, jet_d.a, 1e-12 * d);
     ExpectSameGradient(g, jet_d.v.data(), 5, 1e-10, d);
     EXPECT_NEAR(d, EllipsoidD(e, m), 1e-11 * d);
     const double g1 = GgxG1(u, shape, false, g);
-    const Jet jet_g = Jet(u.z) / SlopeSigmaFormula(v, {Jet(u.x), Jet(u.y), Jet(u.z)});
+    const LobeJet jet_g = LobeJet(u.z) / SlopeSigmaFormula(v, {LobeJet(u.x), LobeJet(u.y), LobeJet(u.z)});
     EXPECT_NEAR(g1, jet_g.a, 1e-12 * g1);
     ExpectSameGradient(g, jet_g.v.data(), 5, 1e-10, g1);
     EXPECT_NEAR(g1, EllipsoidG1Unclamped(e, u), 1e-11 * g1);

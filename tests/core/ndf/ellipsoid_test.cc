@@ -10,7 +10,7 @@
 namespace lobefit {
 namespace {
 
-using Jet = ceres::Jet<double, 8>;
+using EllipsoidJet = ceres::Jet<double, 8>;
 
 TEST(EllipsoidTables, D) {
   const ReferenceTable table("ellipsoid_D");
@@ -45,14 +45,15 @@ TEST(EllipsoidTables, SigmaAndG1) {
 
 // Parameters and direction as Jets with eight independent directions of derivation.
 struct JetInputs {
-  Jet p[5];
-  Vec3T<Jet> w;
+  EllipsoidJet p[5];
+  Vec3T<EllipsoidJet> w;
   JetInputs(const Ellipsoid& e, const Vec3& v)
-      : p{Jet(e.alpha_x, 0), Jet(e.alpha_y, 1), Jet(e.theta_x, 2), Jet(e.theta_y, 3), Jet(e.theta_z, 4)},
-        w{Jet(v.x, 5), Jet(v.y, 6), Jet(v.z, 7)} {}
+      : p{EllipsoidJet(e.alpha_x, 0), EllipsoidJet(e.alpha_y, 1), EllipsoidJet(e.theta_x, 2),
+          EllipsoidJet(e.theta_y, 3), EllipsoidJet(e.theta_z, 4)},
+        w{EllipsoidJet(v.x, 5), EllipsoidJet(v.y, 6), EllipsoidJet(v.z, 7)} {}
 };
 
-TEST(EllipsoidJets, AgreeWithTheAnalyticGradients) {
+TEST(Jets, AgreeWithTheAnalyticGradients) {
   ShapeGenerator random(1);
   for (int i = 0; i < 2000; ++i) {
     const Ellipsoid e = i % 2 == 0 ? random.Moderate() : random.Hostile();
@@ -62,7 +63,7 @@ TEST(EllipsoidJets, AgreeWithTheAnalyticGradients) {
     const double D = EllipsoidD(e, m, gradient, &dw);
     gradient[5] = dw.x, gradient[6] = dw.y, gradient[7] = dw.z;
     const JetInputs at_m(e, m);
-    const Jet jet_D = EllipsoidDFormula(at_m.p, at_m.w);
+    const EllipsoidJet jet_D = EllipsoidDFormula(at_m.p, at_m.w);
     EXPECT_NEAR(D, jet_D.a, 1e-10 * D);
     ExpectSameGradient(gradient, jet_D.v.data(), 5, 1e-10, D);
     ExpectSameGradient(gradient + 5, jet_D.v.data() + 5, 3, 1e-10);
@@ -70,7 +71,7 @@ TEST(EllipsoidJets, AgreeWithTheAnalyticGradients) {
     const double sigma = EllipsoidSigma(e, u, gradient, &dw);
     gradient[5] = dw.x, gradient[6] = dw.y, gradient[7] = dw.z;
     const JetInputs at_u(e, u);
-    const Jet jet_sigma = EllipsoidSigmaFormula(at_u.p, at_u.w);
+    const EllipsoidJet jet_sigma = EllipsoidSigmaFormula(at_u.p, at_u.w);
     EXPECT_NEAR(sigma, jet_sigma.a, 1e-10 * sigma);
     ExpectSameGradient(gradient, jet_sigma.v.data(), 5, 1e-10, sigma);
     ExpectSameGradient(gradient + 5, jet_sigma.v.data() + 5, 3, 1e-10);

@@ -66,14 +66,15 @@ TEST(OffCenterTables, EllipsoidFromOffCenter) {
   }
 }
 
-using Jet = ceres::Jet<double, 5>;
+using OffCenterJet = ceres::Jet<double, 5>;
 
 TEST(OffCenterJets, JacobianFromEllipsoid) {
   ShapeGenerator random(31);
   for (int i = 0; i < 500; ++i) {
     const Ellipsoid e = random.Moderate();
-    const Jet p[5] = {Jet(e.alpha_x, 0), Jet(e.alpha_y, 1), Jet(e.theta_x, 2), Jet(e.theta_y, 3), Jet(e.theta_z, 4)};
-    Jet expected[5];
+    const OffCenterJet p[5] = {OffCenterJet(e.alpha_x, 0), OffCenterJet(e.alpha_y, 1), OffCenterJet(e.theta_x, 2),
+                               OffCenterJet(e.theta_y, 3), OffCenterJet(e.theta_z, 4)};
+    OffCenterJet expected[5];
     OffCenterFormula(p, expected);
     double jacobian[25];
     const OffCenter o = OffCenterFromEllipsoid(e, jacobian);

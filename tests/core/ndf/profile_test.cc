@@ -47,7 +47,7 @@ SlopeDistribution RandomSlopes(ShapeGenerator* random) {
           random->Uniform(-0.5, 0.5)};
 }
 
-Vec3 Upper(ShapeGenerator* random) {
+Vec3 UpperWithHorizon(ShapeGenerator* random) {
   const Vec3 u = random->Sphere();
   return {u.x, u.y, std::abs(u.z)};
 }
@@ -139,7 +139,7 @@ TEST(ProfileLaws, ZeroIsGgxToTheBit) {
     const SlopeDistribution slopes = RandomSlopes(&random);
     const ShapeInvariantDistribution profile(masking, slopes);
     const SlopeNormalDistribution ggx(slopes);
-    const Vec3 u = i % 2 == 0 ? random.Sphere() : Upper(&random);
+    const Vec3 u = i % 2 == 0 ? random.Sphere() : UpperWithHorizon(&random);
     double a[11], b[5];
     EXPECT_EQ(profile.D(u, a), ggx.D(u, b));
     ExpectSameGradient(a, b, 5, 1e-15);
@@ -221,7 +221,7 @@ void ExpectGradients(const Make& make, const std::vector<double>& p, unsigned se
   ShapeGenerator random(seed);
   std::vector<Vec3> u, m;
   for (std::size_t i = 0; i < kDirections; ++i) {
-    u.push_back(i % 3 == 0 ? random.Sphere() : Upper(&random));
+    u.push_back(i % 3 == 0 ? random.Sphere() : UpperWithHorizon(&random));
     m.push_back(Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), 1}));
   }
   std::vector<std::vector<double>> expected_D(kDirections, std::vector<double>(size)), expected_sigma = expected_D;
@@ -305,7 +305,7 @@ TEST(StudentLaws, TendsToBeckmann) {
     const double D = SlopeDistributionD(slopes, m);
     const double t = -std::log(D * std::pow(m.z, 4) / SlopeNormalisation(slopes));
     EXPECT_NEAR(std::log(StudentD(1e8, slopes, m) / D), (0.5 * t * t - t) / 1e8, 1e-12 * (1 + t * t * t));
-    const Vec3 u = Upper(&random);
+    const Vec3 u = UpperWithHorizon(&random);
     EXPECT_NEAR(StudentDistribution(PowerLawGrid(), 100, slopes).Sigma(u), SmithSigma(slopes, u),
                 3e-3 * slopes.alpha_x);
   }

@@ -17,7 +17,7 @@
 namespace lobefit {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 class Random {
  public:
@@ -64,7 +64,7 @@ TEST(Sel, Table) {
     const Vec3 rotation = {table(row, "rot_x"), table(row, "rot_y"), table(row, "rot_z")};
     const Vec3 w = {table(row, "wx"), table(row, "wy"), table(row, "wz")};
     const Vec3 v = RotationMatrix(rotation) * w;
-    EXPECT_LT(Norm(v - Vec3{table(row, "vx"), table(row, "vy"), table(row, "vz")}), 4 * kEps);
+    EXPECT_LT(Norm(v - Vec3{table(row, "vx"), table(row, "vy"), table(row, "vz")}), 4 * kEpsilon);
     SelGradient gradient;
     const double k = Sel(ax, ay, rotation, w, &gradient);
     // The table has no condition number at the kink. There cond = (|w_j dK/dw_j| + |r_j dK/dr_j| + 2 a |one-sided|) / K
@@ -108,7 +108,7 @@ TEST(Sel, GradientEqualsJets) {
     SelLobeGradient gradient;
     const double k = SelLobe(ax, ay, v, &gradient);
     const Jet jet = SelLobeFormula(Jet(ax, 0), Jet(ay, 1), Vec3T<Jet>{Jet(v.x, 2), Jet(v.y, 3), Jet(v.z, 4)});
-    EXPECT_NEAR(k, jet.a, 8 * kEps * k);
+    EXPECT_NEAR(k, jet.a, 8 * kEpsilon * k);
     const double values[5] = {gradient.dalpha_x, gradient.dalpha_y, gradient.dv.x, gradient.dv.y, gradient.dv.z};
     for (int j = 0; j < 5; ++j) EXPECT_NEAR(values[j], jet.v[j], 1e-10 * jet.v.norm()) << i << " " << j;
     EXPECT_NEAR(Dot(gradient.dv, v), -2 * k, 1e-12 * (k + Norm(gradient.dv)));
@@ -135,16 +135,16 @@ TEST(Sel, LawsForHostileParameters) {
     const Vec3 v = random.Near(ax, ay);
     const double k = SelLobe(ax, ay, v);
     EXPECT_GT(k, 0);
-    EXPECT_LE(k, 1 + 4 * kEps);
+    EXPECT_LE(k, 1 + 4 * kEpsilon);
     const double bound = Ssl(larger, PolarAngle(v));
     // The bound's own rounding, through its sensitivity to the angle, is part of the comparison.
     double dtheta = 0;
     Ssl(larger, PolarAngle(v), nullptr, &dtheta);
-    EXPECT_LE(k, bound * (1 + 32 * kEps) + 4 * kEps * std::fabs(dtheta)) << ax << " " << ay;
+    EXPECT_LE(k, bound * (1 + 32 * kEpsilon) + 4 * kEpsilon * std::fabs(dtheta)) << ax << " " << ay;
     EXPECT_EQ(SelLobe(ax, ay, {-v.x, v.y, v.z}), k);
     EXPECT_EQ(SelLobe(ay, ax, {v.y, v.x, v.z}), k);
-    EXPECT_NEAR(SelLobe(ax, ay, {0, 0, 1}), 1, 2 * kEps);
-    EXPECT_NEAR(SelLobe(ax, ay, {0, 0, -1}), std::pow(larger, 4), 8 * kEps * std::pow(larger, 4));
+    EXPECT_NEAR(SelLobe(ax, ay, {0, 0, 1}), 1, 2 * kEpsilon);
+    EXPECT_NEAR(SelLobe(ax, ay, {0, 0, -1}), std::pow(larger, 4), 8 * kEpsilon * std::pow(larger, 4));
     // Equality with the spheroidal lobe in the plane of the larger alpha.
     const double theta = random.Uniform(0, kPi);
     const Vec3 in_plane = ax >= ay ? FromSpherical(theta, 0) : RotateX({0, 0, 1}, theta);
@@ -200,7 +200,7 @@ TEST(Sel, IntegralByQuadrature) {
     };
     const double integral = 4 * IntegrateAdaptive(outer, 0, 0.5 * kPi, {1e-11, 0, 500});
     EXPECT_NEAR(SelIntegral(ax, ay), integral, 1e-9 * integral) << ax << " " << ay;
-    EXPECT_GE(SelIntegral(ax, ay), 4 * kPi * ax * ay * (1 - 8 * kEps));
+    EXPECT_GE(SelIntegral(ax, ay), 4 * kPi * ax * ay * (1 - 8 * kEpsilon));
   }
   EXPECT_NEAR(SelIntegral(0.3, 0.1), 0.433368, 1e-6);
   EXPECT_NEAR(SelIntegral(0.07, 0.07), 4 * kPi * 0.07 * 0.07, 4e-16);
@@ -216,16 +216,16 @@ TEST(Sel, EllipsoidAndItsIntersections) {
     EXPECT_LT(near.t, 0);
     SelLobeGradient gradient;
     const double k = SelLobe(ax, ay, v, &gradient, SelKink::kAlphaXLarger);
-    EXPECT_NEAR(far.t * far.t, k, 16 * kEps * k) << ax << " " << ay;
+    EXPECT_NEAR(far.t * far.t, k, 16 * kEpsilon * k) << ax << " " << ay;
     const double scale = std::fabs(gradient.dalpha_x) + std::fabs(gradient.dalpha_y);
     EXPECT_NEAR(2 * far.t * far.dt_dalpha_x, gradient.dalpha_x, 1e-12 * scale);
     EXPECT_NEAR(2 * far.t * far.dt_dalpha_y, gradient.dalpha_y, 1e-12 * scale);
     // The opposite direction meets the same line behind the origin.
-    EXPECT_NEAR(near.t * near.t, SelLobe(ax, ay, -v), 16 * kEps * near.t * near.t);
+    EXPECT_NEAR(near.t * near.t, SelLobe(ax, ay, -v), 16 * kEpsilon * near.t * near.t);
   }
   const auto [center, axes] = SelEllipsoidOf(0.4, 0.2);
-  EXPECT_NEAR(center.z + axes.z, 1, kEps);
-  EXPECT_NEAR(axes.z - center.z, 0.16, kEps);
+  EXPECT_NEAR(center.z + axes.z, 1, kEpsilon);
+  EXPECT_NEAR(axes.z - center.z, 0.16, kEpsilon);
   SelHit near, far;
   // From outside, along y through the centre: at distance 3 -+ alpha_y.
   ASSERT_TRUE(SelIntersect(0.4, 0.2, {0, -3, center.z}, {0, 2, 0}, &near, &far));
@@ -280,7 +280,7 @@ TEST(SelCosine, GradientByDifferences) {
     const double ax = random.LogUniform(0.02, 1), ay = random.LogUniform(0.02, 1);
     const Vec3 r = random.Direction(), n = random.Direction();
     const auto f = [](double x, double y, const Vec3& rotation, const Vec3& normal) {
-      return SelCosineIntegral(x, y, rotation, normal, nullptr, SelKink::kNan, {1e-12, 0, 4000});
+      return SelCosineIntegral(x, y, rotation, normal, nullptr, SelKink::kNone, {1e-12, 0, 4000});
     };
     SelGradient g;
     const double value = SelCosineIntegral(ax, ay, r, n, &g);

@@ -14,7 +14,7 @@ namespace lobefit {
 namespace {
 
 constexpr int kCoordinates = 5 + 6;
-using Jet = ceres::Jet<double, kCoordinates>;
+using KernelJet = ceres::Jet<double, kCoordinates>;
 
 // The whole model and metric written again for Jets, in the most direct form: slope-space GGX, clamped Smith, Schlick,
 // Lambert.
@@ -84,8 +84,8 @@ TEST_P(EveryMetric, SumsAgreeWithJets) {
       Eigen::Matrix<double, kCoordinates, kCoordinates>::Zero();
   Eigen::Matrix<double, kCoordinates, 1> expected_g = Eigen::Matrix<double, kCoordinates, 1>::Zero();
   double expected_cost = 0;
-  Jet jets[kCoordinates];
-  for (int k = 0; k < kCoordinates; ++k) jets[k] = Jet(u[static_cast<std::size_t>(k)], k);
+  KernelJet jets[kCoordinates];
+  for (int k = 0; k < kCoordinates; ++k) jets[k] = KernelJet(u[static_cast<std::size_t>(k)], k);
   double sum_weight = 0;
   std::vector<double> weight(samples.size(), 1.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -98,8 +98,9 @@ TEST_P(EveryMetric, SumsAgreeWithJets) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double w = weight[i] * static_cast<double>(samples.size()) / sum_weight;
     for (std::size_t c = 0; c < 3; ++c) {
-      const Jet r = ResidualOf(TransformOf(GetParam(), recipe.noise), ModelValue(jets, c, samples.wi(i), samples.wo(i)),
-                               samples.values[c][i], samples.wi(i));
+      const KernelJet r =
+          ResidualOf(TransformOf(GetParam(), recipe.noise), ModelValue(jets, c, samples.wi(i), samples.wo(i)),
+                     samples.values[c][i], samples.wi(i));
       expected_cost += 0.5 * w * r.a * r.a;
       expected_g += w * r.a * r.v;
       expected_h += w * r.v * r.v.transpose();

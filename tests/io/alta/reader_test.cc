@@ -89,7 +89,7 @@ double HalfAzimuth(const Vec3& l, const Vec3& v) { return Angle(l.y + v.y, l.x +
 double BackAzimuth(const Vec3& l, const Vec3& v) { return Angle(l.y - v.y, l.x - v.x); }
 double Theta(const Vec3& w) { return std::acos(w.z); }
 double Phi(const Vec3& w) { return Angle(w.y, w.x); }
-Vec3 Difference(const Vec3& l, const Vec3& v) {
+Vec3 DifferenceVector(const Vec3& l, const Vec3& v) {
   const Vec3 h = Normalized(l + v);
   // Rows of the rotation that takes h to z by way of its own azimuth.
   const double sine = std::hypot(h.x, h.y), c = h.x / sine, s = h.y / sine;
@@ -107,11 +107,11 @@ const std::vector<Definition>& Definitions() {
        }},
       {"RUSIN_TH_TD", 2,
        [](const Vec3& l, const Vec3& v) -> std::array<double, 6> {
-         return {Theta(Normalized(l + v)), std::acos(Difference(l, v).z)};
+         return {Theta(Normalized(l + v)), std::acos(DifferenceVector(l, v).z)};
        }},
       {"COS_TH_TD", 2,
        [](const Vec3& l, const Vec3& v) -> std::array<double, 6> {
-         return {Normalized(l + v).z, Difference(l, v).z};
+         return {Normalized(l + v).z, DifferenceVector(l, v).z};
        }},
       {"STARK_2D", 2,
        [](const Vec3& l, const Vec3& v) -> std::array<double, 6> {
@@ -123,7 +123,7 @@ const std::vector<Definition>& Definitions() {
        }},
       {"RUSIN_TH_TD_PD", 3,
        [](const Vec3& l, const Vec3& v) -> std::array<double, 6> {
-         const Vec3 d = Difference(l, v);
+         const Vec3 d = DifferenceVector(l, v);
          return {Theta(Normalized(l + v)), std::acos(d.z), Phi(d)};
        }},
       {"ISOTROPIC_TV_TL_DPHI", 3,
@@ -176,7 +176,7 @@ const std::vector<Definition>& Definitions() {
       {"RUSIN_TH_PH_TD_PD", 4,
        [](const Vec3& l, const Vec3& v) -> std::
                                             array<double, 6> {
-                                              const Vec3 h = Normalized(l + v), d = Difference(l, v);
+                                              const Vec3 h = Normalized(l + v), d = DifferenceVector(l, v);
                                               return {Theta(h), Phi(h), std::acos(d.z), Phi(d)};
                                             }},
       {"SPHERICAL_TL_PL_TV_PV", 4,

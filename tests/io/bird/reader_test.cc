@@ -3,7 +3,7 @@
 namespace lobefit {
 namespace {
 
-std::string Document(const std::string& data) {
+std::string BirdDocument(const std::string& data) {
   return R"({"metadata":{"type":"BRDF","method":"measurement"},"data":{)" + data + "}}";
 }
 
@@ -12,10 +12,10 @@ constexpr const char* kAngles =
     R"("theta_r":{"unit":"rad","values":[0.7853981633974483,0.5235987755982988]},"phi_r":{"unit":"°","values":[190,20]},)";
 
 TEST(Bird, ReadsArraysOfVariables) {
-  const Measurement m = ReadText(
-      Document(std::string(kAngles) +
-               R"("wavelength_i":{"unit":"nm","values":[550,550]},)"
-               R"("BRDF":{"unit":"sr^-1","values":[1.9,0.6],"uncertainty":{"unit":"sr^-1","value":[0.02,0.006]}})"));
+  const Measurement m = ReadText(BirdDocument(
+      std::string(kAngles) +
+      R"("wavelength_i":{"unit":"nm","values":[550,550]},)"
+      R"("BRDF":{"unit":"sr^-1","values":[1.9,0.6],"uncertainty":{"unit":"sr^-1","value":[0.02,0.006]}})"));
   EXPECT_EQ(m.format, "bird");
   ASSERT_EQ(m.samples.size(), 2U);
   ExpectSample(m, 0, 45, 10, 45, 190, 1.9);
@@ -25,7 +25,7 @@ TEST(Bird, ReadsArraysOfVariables) {
 }
 
 TEST(Bird, PolarisationsAreAveragedAndWavelengthsAreChannels) {
-  const Measurement m = ReadText(Document(
+  const Measurement m = ReadText(BirdDocument(
       R"("theta_i":{"unit":"deg","values":[0,0,0,0]},"phi_i":{"unit":"deg","values":[0,0,0,0]},"theta_r":{"unit":"deg","values":[10,10,10,10]},)"
       R"("phi_r":{"unit":"deg","values":[60,60,60,60]},"wavelength_i":{"unit":"um","values":[0.55,0.55,0.65,0.65]},)"
       R"("polarization_i":{"notation":"inStokes","values":[[1,1,0,0],[1,-1,0,0],[1,1,0,0],[1,-1,0,0]]},"BRDF":{"unit":"sr^-1","values":[0.2,0.4,0.3,0.5]})"));
@@ -47,17 +47,18 @@ TEST(Bird, ReadsDraftsOfRows) {
 }
 
 TEST(Bird, RefusesWhatItCannotUnderstand) {
-  EXPECT_NE(MessageOf(Document(std::string(kAngles) + R"("BRDF":{"unit":"furlong","values":[1,2]})"))
+  EXPECT_NE(MessageOf(BirdDocument(std::string(kAngles) + R"("BRDF":{"unit":"furlong","values":[1,2]})"))
                 .find("BRDF has the unit 'furlong'"),
             std::string::npos);
-  EXPECT_NE(MessageOf(Document(std::string(kAngles) + R"("BRDF":{"unit":"sr^-1","values":[1]})"))
+  EXPECT_NE(MessageOf(BirdDocument(std::string(kAngles) + R"("BRDF":{"unit":"sr^-1","values":[1]})"))
                 .find("'theta_i' has 2 values, BRDF has 1"),
             std::string::npos);
-  EXPECT_NE(MessageOf(Document(R"("theta_r":{"unit":"deg","values":[1]},"BRDF":{"unit":"sr^-1","values":[1]})"))
+  EXPECT_NE(MessageOf(BirdDocument(R"("theta_r":{"unit":"deg","values":[1]},"BRDF":{"unit":"sr^-1","values":[1]})"))
                 .find("no variable 'theta_i'"),
             std::string::npos);
-  EXPECT_NE(MessageOf(Document(std::string(kAngles) + R"("BRDF":{"unit":"sr^-1","values":[1,2)")).find("no valid JSON"),
-            std::string::npos);
+  EXPECT_NE(
+      MessageOf(BirdDocument(std::string(kAngles) + R"("BRDF":{"unit":"sr^-1","values":[1,2)")).find("no valid JSON"),
+      std::string::npos);
 }
 
 }  // namespace

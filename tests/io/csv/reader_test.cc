@@ -1,31 +1,16 @@
 #include <cmath>
 
-#include "tests/support/temporary_file.h"
-#include <gtest/gtest.h>
-
-#include "lobefit/base/error.h"
-#include "lobefit/io/read.h"
-#include "lobefit/math/directions.h"
+#include "tests/io/csv/read_csv.h"
 
 namespace lobefit {
 namespace {
-
-Measurement Read(std::string_view text, const ReadOptions& options = {}) {
-  const TemporaryFile file(text);
-  return ReadMeasurement(file.path(), options);
-}
-
-void ExpectDirection(const Vec3& found, double theta_deg, double phi_deg) {
-  const Vec3 expected = FromSpherical(DegreesToRadians(theta_deg), DegreesToRadians(phi_deg));
-  EXPECT_NEAR(Norm(found - expected), 0, 1e-14) << theta_deg << " " << phi_deg;
-}
 
 double F(const Measurement& measurement, std::size_t sample, std::size_t channel = 0) {
   return measurement.samples.values[channel][sample];
 }
 
 TEST(Csv, ReadsNamedColumnsInAnyOrder) {
-  const Measurement m = Read("B,phi_o,theta_o,R,theta_i,phi_i,G\n3,40,30,1,10,20,2\n");
+  const Measurement m = ReadText("B,phi_o,theta_o,R,theta_i,phi_i,G\n3,40,30,1,10,20,2\n");
   ASSERT_EQ(m.samples.size(), 1U);
   EXPECT_EQ(m.format, "csv");
   ExpectDirection(m.samples.wi(0), 10, 20);
@@ -44,7 +29,7 @@ TEST(Csv, LineEndsSeparatorsAndByteOrderMarkDoNotMatter) {
                            "theta_i\tphi_i\ttheta_o\tphi_o\tf\n10\t20\t30\t40\t0.5\n# note\n50\t60\t70\t80\t0.25\n",
                            "theta_i phi_i  theta_o phi_o f\n 10 20 30 40 0.5\n50 60 70  80 0.25\n",
                            "# theta_i,phi_i,theta_o,phi_o,f\n10,20,30,40,0.5\n50,60,70,80,0.25\n"}) {
-    const Measurement m = Read(text);
+    const Measurement m = ReadText(text);
     ASSERT_EQ(m.samples.size(), 2U) << text;
     ExpectDirection(m.samples.wi(1), 50, 60);
     ExpectDirection(m.samples.wo(1), 70, 80);
@@ -54,7 +39,7 @@ TEST(Csv, LineEndsSeparatorsAndByteOrderMarkDoNotMatter) {
 }
 
 TEST(Csv, HeaderKeysStateUnitKindAndSense) {
-  const Measurement m = Read(
+  const Measurement m = ReadText(
       "# angle-unit: rad\n# value-kind = f-cos-o\n# incident: propagation\n# lobefit.alpha_x: 0.1\n"
       "theta_i,phi_i,theta_o,phi_o,f\n0.1,0.2,1.0,0.4,2\n");
   ExpectDirection(m.samples.wi(0), RadiansToDegrees(0.1), RadiansToDegrees(0.2) + 180);
@@ -70,7 +55,7 @@ TEST(Csv, OptionsOverrideHeaderAndNames) {
   options.angle_unit = AngleUnit::kRadians;
   options.value_kind = ValueKind::kReflectanceFactor;
   options.incident_sense = IncidentSense::kTowardsSource;
-  const Measurement m = Read(
+  const Measurement m = ReadText(
       "# angle-unit: deg\n# value-kind: f-cos-o\n# incident: propagation\ntheta_i_deg,phi_i,theta_o,phi_o,f\n"
       "0.1,0.2,1.0,0.4,2\n",
       options);
@@ -85,51 +70,52 @@ TEST(Csv, EveryValueKindBecomesTheSameBrdf) {
       {"f", f},          {"f-cos-o", f * cos_o},   {"f-cos-i", f * cos_i},
       {"pi-f", kPi * f}, {"intensity", f * cos_o}, {"pi-f-cos-o", kPi * f * cos_o}};
   for (const auto& [kind, value] : kinds) {
-    const Measurement m = Read("# value-kind: " + kind + "\ntheta_i,phi_i,theta_o,phi_o,value\n20,0,50,10," +
-                               std::to_string(value) + "\n");
+    const Measurement m = ReadText("# value-kind: " + kind + "\ntheta_i,phi_i,theta_o,phi_o,value\n20,0,50,10," +
+                                   std::to_string(value) + "\n");
     EXPECT_NEAR(F(m, 0), f, 2e-6) << kind;
   }
 }
 
 TEST(Csv, SignedAnglesLieOnTheOtherSide) {
-  const Measurement with_phi = Read("theta_i,phi_i,theta_o,phi_o,f\n-10,20,-30,40,1\n");
+  const Measurement with_phi = ReadText("theta_i,phi_i,theta_o,phi_o,f\n-10,20,-30,40,1\n");
   ExpectDirection(with_phi.samples.wi(0), 10, 200);
   ExpectDirection(with_phi.samples.wo(0), 30, 220);
   // Without azimuths theta_o = theta_i is the mirror direction.
-  const Measurement in_plane = Read("theta_i,theta_o,f\n30,30,1\n30,-40,2\n");
+  const Measurement in_plane = ReadText("theta_i,theta_o,f\n30,30,1\n30,-40,2\n");
   ExpectDirection(in_plane.samples.wi(0), 30, 0);
   ExpectDirection(in_plane.samples.wo(0), 30, 180);
   ExpectDirection(in_plane.samples.wo(1), 40, 0);
 }
 
 TEST(Csv, DeltaPhiCountsFromTheLight) {
-  const Measurement m = Read("theta_i,theta_o,dphi,f\n30,40,180,1\n30,40,0,2\n");
+  const Measurement m = ReadText("theta_i,theta_o,dphi,f\n30,40,180,1\n30,40,0,2\n");
   ExpectDirection(m.samples.wi(0), 30, 0);
   ExpectDirection(m.samples.wo(0), 40, 180);
   ExpectDirection(m.samples.wo(1), 40, 0);
   EXPECT_TRUE(m.isotropic);
-  const Measurement turned = Read("theta_i,phi_i,theta_o,dphi,f\n30,25,40,180,1\n");
+  const Measurement turned = ReadText("theta_i,phi_i,theta_o,dphi,f\n30,25,40,180,1\n");
   ExpectDirection(turned.samples.wo(0), 40, 205);
   EXPECT_FALSE(turned.isotropic);
 }
 
 TEST(Csv, AzimuthIsThatOfTheReceiversPlane) {
-  const Measurement m = Read("azimuth_deg,incidence_deg,receive_deg,RT\n-90,30,30,1\n90,30,30,1\n0,30,10,1\n");
+  const Measurement m = ReadText("azimuth_deg,incidence_deg,receive_deg,RT\n-90,30,30,1\n90,30,30,1\n0,30,10,1\n");
   ExpectDirection(m.samples.wo(0), 30, 180);  // mirror
   ExpectDirection(m.samples.wo(1), 30, 0);    // back to the light
   ExpectDirection(m.samples.wo(2), 10, 270);  // across
   EXPECT_NEAR(F(m, 0), 1 / (kPi * std::cos(DegreesToRadians(30))), 1e-15);
   // A turned sample turns both directions backwards in its frame.
-  const Measurement turned = Read("# sample-rotation-deg: 20\nazimuth_deg,incidence_deg,receive_deg,RT\n-90,30,30,1\n");
+  const Measurement turned =
+      ReadText("# sample-rotation-deg: 20\nazimuth_deg,incidence_deg,receive_deg,RT\n-90,30,30,1\n");
   ExpectDirection(turned.samples.wi(0), 30, -20);
   ExpectDirection(turned.samples.wo(0), 30, 160);
 }
 
 TEST(Csv, WavelengthsAsColumnsAndAsRows) {
-  const Measurement columns = Read("theta_i,theta_o,450nm,550 nm,0.65um\n10,20,1,2,3\n");
+  const Measurement columns = ReadText("theta_i,theta_o,450nm,550 nm,0.65um\n10,20,1,2,3\n");
   EXPECT_EQ(columns.channels.wavelengths_nm, (std::vector<double>{450, 550, 650}));
   EXPECT_EQ(columns.channels.names[2], "650nm");
-  const Measurement rows = Read(
+  const Measurement rows = ReadText(
       "lambda,theta_i,theta_o,f_r11\n0.55,10,20,2\n0.45,10,20,1\n0.55,10,30,4\n0.45,10,30,3\n0.45,10,40,5\n"
       "0.45,10,20,9\n");
   ASSERT_EQ(rows.samples.size(), 2U);
@@ -143,8 +129,8 @@ TEST(Csv, WavelengthsAsColumnsAndAsRows) {
 
 TEST(Csv, RowsOfAWavelengthKeepTheirUncertainties) {
   const Measurement m =
-      Read("lambda,theta_i,theta_o,f,sigma\n550,10,20,2,0.3\n450,10,20,1,0.4\n550,10,30,2,3\n450,10,30,1,4\n");
-  const Measurement same = Read(
+      ReadText("lambda,theta_i,theta_o,f,sigma\n550,10,20,2,0.3\n450,10,20,1,0.4\n550,10,30,2,3\n450,10,30,1,4\n");
+  const Measurement same = ReadText(
       "theta_i,theta_o,450nm,550nm,sigma\n10,20,1,2,0.3535533905932738\n"
       "10,30,1,2,3.5355339059327378\n");
   ASSERT_EQ(m.samples.sigma.size(), 2U);
@@ -152,7 +138,7 @@ TEST(Csv, RowsOfAWavelengthKeepTheirUncertainties) {
   EXPECT_NEAR(m.samples.sigma[1] / m.samples.sigma[0], 10, 1e-12);
   for (const std::size_t i : {0, 1}) EXPECT_NEAR(m.samples.sigma[i], same.samples.sigma[i], 1e-14);
 
-  const Measurement weighted = Read(
+  const Measurement weighted = ReadText(
       "lambda,theta_i,theta_o,f,weight\n550,10,20,2,1\n450,10,20,1,3\n550,10,30,2,6\n450,10,30,1,6\n450,9,9,1,0\n");
   ASSERT_EQ(weighted.samples.weight.size(), 2U);
   EXPECT_NEAR(weighted.samples.weight[1] / weighted.samples.weight[0], 3, 1e-15);
@@ -162,7 +148,7 @@ TEST(Csv, RowsOfAWavelengthKeepTheirUncertainties) {
 TEST(Csv, RepeatedRowsOfAWavelengthAreMergedWhenAsked) {
   ReadOptions options;
   options.repeated = RepeatedRows::kMean;
-  const Measurement m = Read(
+  const Measurement m = ReadText(
       "lambda,theta_i,theta_o,f\n550,10,20,2\n450,10,20,1\n550,10,20,4\n450,10,20,3\n450,10,20,9\n550,10,30,1\n"
       "450,10,30,1\n",
       options);
@@ -173,7 +159,8 @@ TEST(Csv, RepeatedRowsOfAWavelengthAreMergedWhenAsked) {
 }
 
 TEST(Csv, CountsWhatItSetsAside) {
-  const Measurement m = Read("theta_i,theta_o,f\n10,20,1\n10,20,2\n90,20,3\n10,30,nan\n10,40,inf\n10,95,1\nnan,3,1\n");
+  const Measurement m =
+      ReadText("theta_i,theta_o,f\n10,20,1\n10,20,2\n90,20,3\n10,30,nan\n10,40,inf\n10,95,1\nnan,3,1\n");
   EXPECT_EQ(m.samples.size(), 1U);
   EXPECT_EQ(F(m, 0), 1);
   EXPECT_EQ(m.set_aside[SetAsideReason::kDuplicate], 1U);
@@ -185,32 +172,32 @@ TEST(Csv, ChosenColumnAndIgnoredOnes) {
   const std::string text = "theta_i,theta_o,first,second,f\n10,20,1,x,3\n";
   ReadOptions options;
   options.value_column = "First";
-  const Measurement m = Read(text, options);
+  const Measurement m = ReadText(text, options);
   EXPECT_EQ(F(m, 0), 1);
   EXPECT_EQ(m.conventions.at("value-column"), "first (option)");
   ASSERT_EQ(m.remarks.size(), 1U);
   EXPECT_EQ(m.remarks[0], "columns not used: second, f");
-  EXPECT_EQ(F(Read(text), 0), 3);
-  EXPECT_EQ(Read(text).remarks[0], "columns not used: first, second");
+  EXPECT_EQ(F(ReadText(text), 0), 3);
+  EXPECT_EQ(ReadText(text).remarks[0], "columns not used: first, second");
   // A name that speaks of an angle is not passed over.
-  EXPECT_THROW(Read("theta_i,theta_o,tilt,f\n10,20,1,3\n"), InputError);
+  EXPECT_THROW(ReadText("theta_i,theta_o,tilt,f\n10,20,1,3\n"), InputError);
 }
 
 TEST(Csv, WeightsAndUncertaintiesAreKept) {
-  const Measurement weight = Read("theta_i,theta_o,f,weight\n10,20,1,1\n10,30,1,3\n10,40,1,0\n");
+  const Measurement weight = ReadText("theta_i,theta_o,f,weight\n10,20,1,1\n10,30,1,3\n10,40,1,0\n");
   EXPECT_EQ(weight.samples.weight, (std::vector<double>{0.5, 1.5}));
   EXPECT_EQ(weight.set_aside[SetAsideReason::kFlagged], 1U);
-  const Measurement sigma = Read("theta_i,theta_o,f,sigma\n10,20,1,0.1\n10,30,1,0.1\n10,40,1,0.3\n");
+  const Measurement sigma = ReadText("theta_i,theta_o,f,sigma\n10,20,1,0.1\n10,30,1,0.1\n10,40,1,0.3\n");
   EXPECT_EQ(sigma.samples.sigma, (std::vector<double>{0.1, 0.1, 0.3}));
   EXPECT_TRUE(sigma.samples.weight.empty());
 }
 
 TEST(Csv, RepeatedRowsAreMergedWhenAsked) {
   const std::string text = "theta_i,theta_o,f\n10,20,1\n10,30,4\n10,20,3\n10,40,5\n";
-  EXPECT_EQ(F(Read(text), 0), 1);
+  EXPECT_EQ(F(ReadText(text), 0), 1);
   ReadOptions options;
   options.repeated = RepeatedRows::kMean;
-  const Measurement m = Read(text, options);
+  const Measurement m = ReadText(text, options);
   ASSERT_EQ(m.samples.size(), 3U);
   EXPECT_EQ(F(m, 0), 2);
   EXPECT_EQ(m.set_aside[SetAsideReason::kDuplicate], 0U);
@@ -222,7 +209,7 @@ TEST(Csv, RepeatedRowsAreMergedWhenAsked) {
 TEST(Csv, ANoiseFloorIsTheUncertaintyOfEveryReading) {
   ReadOptions options;
   options.noise_floor = 0.01;
-  const Measurement m = Read("theta_i,theta_o,f\n10,20,0.001\n10,30,100\n10,40,0.002\n", options);
+  const Measurement m = ReadText("theta_i,theta_o,f\n10,20,0.001\n10,30,100\n10,40,0.002\n", options);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(m.samples.sigma[i] * m.samples.wi_z[i], 0.01, 1e-15);
   EXPECT_EQ(m.conventions.at("noise-floor"), "0.01 (option)");
 }

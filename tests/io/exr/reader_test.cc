@@ -1,8 +1,8 @@
 #include <array>
 #include <cmath>
 
+#include "tests/io/rgb_material.h"
 #include "tests/support/temporary_file.h"
-#include "tests/support/test_brdf.h"
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
@@ -12,16 +12,6 @@
 
 namespace lobefit {
 namespace {
-
-const Channels kRgb = {{"R", "G", "B"}, {}};
-
-BrdfFunction Rgb(const TestBrdf& brdf) {
-  return [brdf](const Vec3& wi, const Vec3& wo, double* values) {
-    values[0] = brdf(wi, wo);
-    values[1] = values[0] / 2;
-    values[2] = values[0] / 4;
-  };
-}
 
 void ExpectModel(const Measurement& m, const TestBrdf& brdf) {
   for (std::size_t i = 0; i < m.samples.size(); ++i) {
@@ -39,7 +29,7 @@ TEST(Exr, SlicesComeBack) {
       map.axes = axes;
       map.rows = rows;
       map.phi_d = DegreesToRadians(40);
-      WriteExr(Rgb(brdf), kRgb, map, 48, 32, "test", file.path());
+      WriteExr(Rgb(brdf), kThreeChannels, map, 48, 32, "test", file.path());
       const Measurement m = ReadMeasurement(file.path());
       EXPECT_EQ(m.format, "exr");
       EXPECT_TRUE(m.isotropic);
@@ -84,7 +74,7 @@ TEST(Exr, HemispheresComeBackAndIntegrate) {
     map.projection = projection;
     map.theta_i = 0.5;
     map.phi_i = -1.25;
-    WriteExr(Rgb(brdf), kRgb, map, 128, 128, "test", file.path());
+    WriteExr(Rgb(brdf), kThreeChannels, map, 128, 128, "test", file.path());
     const Measurement m = ReadMeasurement(file.path());
     EXPECT_FALSE(m.isotropic);
     EXPECT_NEAR(Norm(m.samples.wi(0) - FromSpherical(0.5, -1.25)), 0, 1e-6);
@@ -120,7 +110,7 @@ TEST(Exr, A288SquareWithoutAttributesIsUtia) {
   const TemporaryFile file;
   ExrMap map;
   map.axes = ExrAxes::kUtia;
-  WriteExr(Rgb(brdf), kRgb, map, 288, 288, "", file.path());
+  WriteExr(Rgb(brdf), kThreeChannels, map, 288, 288, "", file.path());
   const Measurement m = ReadMeasurement(file.path());
   // 6 x 48 directions, of which 47 repeat the normal.
   EXPECT_EQ(m.samples.size(), 241U * 241);
@@ -130,7 +120,7 @@ TEST(Exr, A288SquareWithoutAttributesIsUtia) {
 
 TEST(Exr, EveryCutIsRefused) {
   const TemporaryFile file;
-  WriteExr(Rgb(TestBrdf()), kRgb, ExrMap(), 24, 24, "", file.path());
+  WriteExr(Rgb(TestBrdf()), kThreeChannels, ExrMap(), 24, 24, "", file.path());
   const MappedFile mapped(file.path());
   const std::string bytes(mapped.bytes());
   for (std::size_t length = 1; length + 1 < bytes.size(); length += 17) {

@@ -3,8 +3,8 @@
 #include <cstring>
 #include <random>
 
+#include "tests/io/rgb_material.h"
 #include "tests/support/temporary_file.h"
-#include "tests/support/test_brdf.h"
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
@@ -17,17 +17,6 @@
 
 namespace lobefit {
 namespace {
-
-// Channels are 1, 1/2 and 1/4 of the material.
-BrdfFunction Rgb(const TestBrdf& brdf) {
-  return [brdf](const Vec3& wi, const Vec3& wo, double* values) {
-    values[0] = brdf(wi, wo);
-    values[1] = values[0] / 2;
-    values[2] = values[0] / 4;
-  };
-}
-
-const Channels kRgb = {{"R", "G", "B"}, {}};
 
 TEST(RglAngles, PublishedPoints) {
   EXPECT_NEAR(RglX(0.3), 0.437019, 5e-7);
@@ -63,7 +52,7 @@ Errors ErrorsOf(const RglBrdf& file, const TestBrdf& brdf) {
 TEST(Rgl, ATiltedMaterialComesBackAsARendererSeesIt) {
   const TestBrdf brdf;
   const TemporaryFile file;
-  WriteRgl(Rgb(brdf), kRgb, {}, file.path());
+  WriteRgl(Rgb(brdf), kThreeChannels, {}, file.path());
   const MappedFile mapped(file.path());
   const Errors errors = ErrorsOf(RglBrdf(file.path(), mapped.bytes()), brdf);
   RecordProperty("median", std::to_string(errors.median));
@@ -81,7 +70,7 @@ TEST(Rgl, SamplesStandOnTheirNodes) {
   options.polar_angles = 6;
   options.density_size = 32;
   options.table_size = 16;
-  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  WriteRgl(Rgb(brdf), kThreeChannels, options, file.path());
   const Measurement m = ReadMeasurement(file.path());
   EXPECT_EQ(m.format, "rgl");
   EXPECT_FALSE(m.isotropic);
@@ -103,7 +92,7 @@ TEST(Rgl, SolidAnglesIntegrate) {
   options.polar_angles = 3;
   options.density_size = 128;
   options.table_size = 128;
-  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  WriteRgl(Rgb(brdf), kThreeChannels, options, file.path());
   const Measurement m = ReadMeasurement(file.path());
   double sum = 0, norm = 0;
   for (std::size_t i = 0; i < m.samples.size(); ++i) {
@@ -140,7 +129,7 @@ TEST(Rgl, IsotropicFilesHaveOneAzimuth) {
   const TemporaryFile file;
   RglWriteOptions options;
   options.isotropic = true;
-  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  WriteRgl(Rgb(brdf), kThreeChannels, options, file.path());
   const Measurement m = ReadMeasurement(file.path());
   EXPECT_TRUE(m.isotropic);
   const MappedFile mapped(file.path());
@@ -202,7 +191,7 @@ TEST(Rgl, TheMeanIsTakenWhereTheHalfVectorIsTheNormal) {
   options.polar_angles = 6;
   options.table_size = 16;
   const TemporaryFile plain, table;
-  WriteRgl(Rgb(brdf), kRgb, options, plain.path());
+  WriteRgl(Rgb(brdf), kThreeChannels, options, plain.path());
   const TemporaryFile spread(SpreadAtNormal(plain.path()));
   const Measurement m = ReadMeasurement(spread.path());
   std::size_t at_normal = 0;
@@ -227,7 +216,7 @@ TEST(Rgl, GrazingViewersSeeNarrowLobes) {
   const TemporaryFile file;
   RglWriteOptions options;
   options.isotropic = true;
-  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  WriteRgl(Rgb(brdf), kThreeChannels, options, file.path());
   const MappedFile mapped(file.path());
   const RglBrdf table(file.path(), mapped.bytes());
   for (const double theta_deg : {50.0, 75.0, 80.0, 84.0, 86.0}) {
@@ -258,7 +247,7 @@ TEST(Rgl, ReducedFilesStandForTheWholeCircle) {
   RglWriteOptions options;
   options.azimuths = 8;
   options.polar_angles = 12;
-  WriteRgl(Rgb(brdf), kRgb, options, file.path());
+  WriteRgl(Rgb(brdf), kThreeChannels, options, file.path());
   const MappedFile mapped(file.path());
   const RglBrdf whole(file.path(), mapped.bytes());
   const Errors errors_whole = ErrorsOf(whole, brdf);

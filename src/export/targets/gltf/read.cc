@@ -16,7 +16,7 @@
 namespace lobefit {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 // What each object of a material may hold.
 const std::map<std::string, std::vector<std::string>>& KnownMembers() {
