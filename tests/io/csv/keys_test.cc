@@ -34,7 +34,7 @@ TEST(CsvKeys, WhatResemblesAKeyIsSaid) {
 
 // The words of an option that a file states for itself are the file's: its line is named.
 TEST(CsvKeys, FaultsOfStatedOptionsAreOfTheFile) {
-  for (const char* key : {"# columns: theta_i=", "# columns: x=1", "# where: pol", "# no-value: 0,,1",
+  for (const char* key : {"# columns: theta_i=", "# columns: bogus=1", "# where: pol", "# no-value: 0,,1",
                           "# exclude: bogus", "# repeated: often"}) {
     EXPECT_NE(MessageOf("\n" + std::string(key) + "\n" + kRows).find("line 2: "), std::string::npos) << key;
   }
