@@ -1,7 +1,7 @@
 # Debian packages that lobefit needs, for apps/quickstart and tests/run (sourced by both).
 build_packages=(
   g++ cmake ninja-build
-  libceres-dev libeigen3-dev libhwy-dev libopencv-core-dev libopencv-imgproc-dev libopenexr-dev
+  libboost-math-dev libceres-dev libeigen3-dev libhwy-dev libopencv-core-dev libopencv-imgproc-dev libopenexr-dev
   libpng-dev zlib1g-dev libfreetype-dev fonts-dejavu-core
   libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libpugixml-dev libssl-dev
 )
