@@ -2,52 +2,164 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <utility>
+#include <unordered_map>
 
 #include "lobefit/math/directions.h"
 
 namespace lobefit {
 namespace {
 
-using GroupKey = std::pair<std::int64_t, std::int64_t>;
+constexpr double kDegree = kPi / 180;
 
-GroupKey KeyOf(const Vec3& wi, double resolution, bool isotropic) {
-  // An isotropic table has millions of directions and bins of a degree: there the faster arc cosine is exact enough.
-  const double theta = isotropic ? std::acos(std::min(1.0, wi.z)) : PolarAngle(wi);
-  const std::int64_t theta_bin = std::llround(theta / resolution);
-  if (isotropic || theta < resolution / 2) return {theta_bin, 0};
-  // Azimuths of -pi and pi are the same direction.
-  const std::int64_t turn = std::llround(2 * kPi / resolution);
-  return {theta_bin, ((std::llround(Azimuth(wi) / resolution) % turn) + turn) % turn};
+// Joins unit directions that lie near each other, in time linear in their number. What lies within a quarter of the
+// resolution of a kept direction counts as that; kept directions within the resolution of each other, and those that a
+// chain of such pairs joins, are one.
+class DirectionMerger {
+ public:
+  explicit DirectionMerger(double resolution)
+      : resolution_(resolution), near_(Chord2(resolution)), same_(Chord2(resolution / 4)) {}
+
+  // Index of the kept direction that `w` counts as.
+  std::uint32_t Add(const Vec3& w) {
+    // Files list an incidence's samples together.
+    if (last_ < kept_.size() && IsWithin(w, kept_[last_], same_)) return last_;
+    const auto mine = static_cast<std::uint32_t>(kept_.size());
+    std::uint32_t found = mine;
+    ForNear(w, [&](std::uint32_t other) {
+      if (found == mine && IsWithin(w, kept_[other], same_)) found = other;
+    });
+    if (found == mine) {
+      parent_.push_back(mine);
+      ForNear(w, [&](std::uint32_t other) {
+        if (IsWithin(w, kept_[other], near_)) parent_[Root(other)] = mine;
+      });
+      kept_.push_back(w);
+      cells_[CellOf(w.x, w.y, w.z)].push_back(mine);
+    }
+    return last_ = found;
+  }
+
+  // The group of each kept direction. Chains that are longer than four resolutions are no jitter but directions that
+  // fill a part of the sphere: each of theirs stays by itself.
+  std::vector<std::uint32_t> Groups() {
+    std::vector<std::uint32_t> groups(kept_.size());
+    const double longest = Chord2(4 * resolution_);
+    std::vector<std::uint8_t> fills(kept_.size(), 0);
+    for (std::uint32_t k = 0; k < kept_.size(); ++k) {
+      groups[k] = Root(k);
+      if (!IsWithin(kept_[k], kept_[groups[k]], longest)) fills[groups[k]] = 1;
+    }
+    for (std::uint32_t k = 0; k < kept_.size(); ++k) {
+      if (fills[groups[k]] != 0) groups[k] = k;
+    }
+    return groups;
+  }
+
+ private:
+  static double Chord2(double angle) { return 4 * std::pow(std::sin(angle / 2), 2); }
+  static bool IsWithin(const Vec3& a, const Vec3& b, double chord2) {
+    const Vec3 d = a - b;
+    return Dot(d, d) <= chord2;
+  }
+  // Cells are cubes with the resolution as edge: what is near lies in the direction's own or one that touches it.
+  std::int64_t CellOf(double x, double y, double z) const {
+    std::int64_t cell = 0;
+    for (const double coordinate : {x, y, z})
+      cell = cell * (std::int64_t{1} << 21) + static_cast<std::int64_t>(std::floor(coordinate / resolution_));
+    return cell;
+  }
+  template <class Visit>
+  void ForNear(const Vec3& w, const Visit& visit) const {
+    for (int k = 0; k < 27; ++k) {
+      const auto cell = cells_.find(CellOf(w.x + (k % 3 - 1) * resolution_, w.y + (k / 3 % 3 - 1) * resolution_,
+                                           w.z + (k / 9 - 1) * resolution_));
+      if (cell == cells_.end()) continue;
+      for (const std::uint32_t other : cell->second) visit(other);
+    }
+  }
+  std::uint32_t Root(std::uint32_t k) {
+    while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
+    return k;
+  }
+
+  double resolution_, near_, same_;
+  std::uint32_t last_ = 0;
+  std::vector<Vec3> kept_;
+  std::vector<std::uint32_t> parent_;
+  std::unordered_map<std::int64_t, std::vector<std::uint32_t>> cells_;
+};
+
+// Groups in the order of the means' polar angles, those within the resolution by azimuth in [0, 2 pi).
+std::vector<std::uint32_t> Ranks(const std::vector<Vec3>& means, double resolution) {
+  std::vector<std::uint32_t> order(means.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::vector<double> theta(means.size()), azimuth(means.size());
+  for (std::size_t g = 0; g < means.size(); ++g) {
+    theta[g] = PolarAngle(means[g]);
+    azimuth[g] = Azimuth(means[g]);
+    if (azimuth[g] < -resolution / 2) azimuth[g] += 2 * kPi;
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return theta[a] < theta[b]; });
+  for (auto ring = order.begin(); ring != order.end();) {
+    auto end = ring + 1;
+    while (end != order.end() && theta[*end] - theta[*(end - 1)] <= resolution / 2) ++end;
+    std::stable_sort(ring, end, [&](std::uint32_t a, std::uint32_t b) { return azimuth[a] < azimuth[b]; });
+    ring = end;
+  }
+  std::vector<std::uint32_t> ranks(means.size());
+  for (std::size_t k = 0; k < order.size(); ++k) ranks[order[k]] = static_cast<std::uint32_t>(k);
+  return ranks;
 }
 
 }  // namespace
 
 Incidences GroupByIncidence(const Measurement& measurement, double resolution) {
+  return GroupByDirection(measurement, measurement.listed_side, resolution);
+}
+
+Incidences GroupByDirection(const Measurement& measurement, Side side, double resolution) {
   const Samples& samples = measurement.samples;
-  if (measurement.isotropic) resolution = std::max(resolution, kPi / 180);
-  std::map<GroupKey, std::uint32_t> groups;
   Incidences incidences;
   incidences.group.resize(samples.size());
-  std::vector<Vec3> sum;
+  // Group of what a sample was sorted under: a kept direction, or a bin of a degree.
+  std::vector<std::uint32_t> groups;
+  if (measurement.isotropic) {
+    resolution = std::max(resolution, kDegree);
+    groups.resize(static_cast<std::size_t>(kPi / 2 / resolution) + 2);
+    std::iota(groups.begin(), groups.end(), 0U);
+  }
+  DirectionMerger merger(resolution);
+  std::vector<Vec3> sums;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Vec3 wi = samples.wi(i);
-    const auto [entry, is_new] =
-        groups.try_emplace(KeyOf(wi, resolution, measurement.isotropic), static_cast<std::uint32_t>(sum.size()));
-    if (is_new) sum.push_back({0, 0, 0});
-    const std::uint32_t group = entry->second;
-    incidences.group[i] = group;
+    const Vec3 w = side == Side::kViewer ? samples.wo(i) : samples.wi(i);
+    // A table has millions of directions: there the faster arc cosine is exact enough.
+    const std::uint32_t key = measurement.isotropic
+                                  ? static_cast<std::uint32_t>(std::lround(std::acos(std::min(1.0, w.z)) / resolution))
+                                  : merger.Add(w);
+    incidences.group[i] = key;
+    if (key >= sums.size()) sums.resize(key + 1, Vec3{0, 0, 0});
     // Isotropic directions are turned into the xz plane, so that the mean is one.
-    sum[group] = sum[group] + (measurement.isotropic ? Vec3{std::hypot(wi.x, wi.y), 0, wi.z} : wi);
+    sums[key] = sums[key] + (measurement.isotropic ? Vec3{std::hypot(w.x, w.y), 0, w.z} : w);
   }
-  std::vector<std::uint32_t> rank(sum.size());
-  for (const auto& [key, group] : groups) {
-    rank[group] = static_cast<std::uint32_t>(incidences.wi.size());
-    incidences.wi.push_back(Normalized(sum[group]));
+  if (!measurement.isotropic) groups = merger.Groups();
+  // Of the kept directions of a group the sums go to one of them.
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    if (groups[k] == k) continue;
+    sums[groups[k]] = sums[groups[k]] + sums[k];
+    sums[k] = {0, 0, 0};
   }
-  for (std::uint32_t& group : incidences.group) group = rank[group];
+  std::vector<std::uint32_t> place(sums.size());
+  std::vector<Vec3> means;
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    if (groups[k] != k || Dot(sums[k], sums[k]) == 0) continue;
+    place[k] = static_cast<std::uint32_t>(means.size());
+    means.push_back(Normalized(sums[k]));
+  }
+  const std::vector<std::uint32_t> ranks = Ranks(means, resolution);
+  incidences.wi.resize(means.size());
+  for (std::size_t g = 0; g < means.size(); ++g) incidences.wi[ranks[g]] = means[g];
+  for (std::uint32_t& group : incidences.group) group = ranks[place[groups[group]]];
   return incidences;
 }
 

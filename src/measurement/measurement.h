@@ -54,6 +54,9 @@ struct Samples {
   void Append(const Vec3& wi, const Vec3& wo, const double* channel_values, std::uint32_t origin_index);
 };
 
+// A direction of a sample: the one to the light (wi) or the one to the viewer (wo).
+enum class Side { kLight, kViewer };
+
 struct Measurement {
   Channels channels;
   Samples samples;
@@ -61,6 +64,8 @@ struct Measurement {
   // True where the file cannot express a dependence on azimuth (MERL, isotropic tables): the fit then takes an
   // isotropic model.
   bool isotropic = false;
+  // The side whose directions were set one after the other while the other side swept: an incidence's samples share it.
+  Side listed_side = Side::kLight;
   // Name of the format as in `lobefit info` ("merl", "rgl", "csv", ...), file name without folder, SHA-256 of the file.
   std::string format;
   std::string source;
