@@ -56,7 +56,7 @@ void FlagEqualAlphas(const Eigen::MatrixXd& covariance, std::size_t first, Eigen
   const double variance = covariance(row, row) + covariance(row + 1, row + 1) - 2 * covariance(row, row + 1);
   const double sigmas = std::isfinite(variance) && variance > 0 ? gap / std::sqrt(variance) : 0.0;
   if (sigmas >= 2) return;
-  p[4].standard_error = p[4].standard_error_clustered = {kNan};
+  p[4].standard_error = p[4].standard_error_clustered = p[4].freedom = {kNan};
   material->degenerate.push_back(
       fmt::format("{}theta_z: {}alpha_x and {}alpha_y agree within {:.1f} sigma, so the axes have no direction", prefix,
                   prefix, prefix, sigmas));
@@ -68,8 +68,8 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
   const std::vector<Parameter> parameters = Parameters(recipe.model);
   const ParameterValues values = layout.Report(u.data());
   const Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
-  const Eigen::MatrixXd covariance = jacobian * uncertainty.covariance * jacobian.transpose();
-  const Eigen::MatrixXd clustered = jacobian * uncertainty.clustered * jacobian.transpose();
+  const Eigen::MatrixXd& covariance = uncertainty.covariance;
+  const Eigen::MatrixXd& clustered = uncertainty.clustered;
   std::vector<Eigen::Index> free_rows;
   std::vector<double> factors;
   const std::vector<std::string> names = EntryNames(parameters, material->channels);
@@ -84,6 +84,9 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
       fitted.standard_error.push_back(fitted.free ? SquareRoot(covariance(row, row)) : kNan);
       fitted.standard_error_clustered.push_back(
           fitted.free && uncertainty.has_clusters ? SquareRoot(clustered(row, row)) : kNan);
+      fitted.freedom.push_back(std::isnan(fitted.standard_error_clustered.back())
+                                   ? kNan
+                                   : uncertainty.freedom[static_cast<std::size_t>(row)]);
       if (fitted.free) {
         free_rows.push_back(row);
         factors.push_back(1 / InsideFactor(parameters[i]));
@@ -104,8 +107,11 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
   }
   Eigen::Index first_row = 0;
   for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
-    FlagEqualAlphas(covariance, FirstParameter(recipe.model, l), first_row, l == 0 ? "" : fmt::format("lobe{}.", l + 1),
-                    material);
+    const auto theta_z = static_cast<std::size_t>(first_row) + 4;
+    if (!uncertainty.undetermined[theta_z]) {
+      FlagEqualAlphas(covariance, FirstParameter(recipe.model, l), first_row,
+                      l == 0 ? "" : fmt::format("lobe{}.", l + 1), material);
+    }
     const KernelModel kernel = layout.ToKernel(u.data());
     const OffCenter off_center = OffCenterFromSlopeCoordinates(kernel.lobes[l].shape);
     const double ax = std::sqrt(off_center.q11), ay = std::sqrt(off_center.q22);
@@ -117,6 +123,8 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
     material->covariance_names.push_back(names[static_cast<std::size_t>(free_rows[a])]);
     for (std::size_t b = 0; b < free_rows.size(); ++b) {
       material->covariance.push_back(covariance(free_rows[a], free_rows[b]) * factors[a] * factors[b]);
+      if (uncertainty.has_clusters)
+        material->covariance_clustered.push_back(clustered(free_rows[a], free_rows[b]) * factors[a] * factors[b]);
     }
   }
 }
@@ -232,7 +240,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   const bool readings = samples.solid_angle.empty() && spread.size() == 0;
   if (readings || needs_noise) {
     const auto predict = [&] {
-      return PredictNoiseBias(found->layout, found->best().u, found->uncertainty.covariance, samples, incidences,
+      return PredictNoiseBias(found->layout, found->best().u, found->uncertainty.of_coordinates, samples, incidences,
                               &pool);
     };
     std::optional<NoiseBias> bias = predict();
@@ -305,7 +313,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         "would leave it; are these values of a sample?",
         100 * std::max(0.0, explained)));
   }
-  material.termination = {best.converged, uncertainty.determined && !has_rival && !(explained < kLeastExplained),
+  material.termination = {best.converged, uncertainty.determined() && !has_rival && !(explained < kLeastExplained),
                           best.message, best.iterations};
   material.source = {measurement->source, measurement->sha256, measurement->format, measurement->conventions};
   material.recipe_name = recipe.name;

@@ -50,6 +50,7 @@ Json ParametersToJson(const Material& material) {
         {"value", Numbers(fitted.values, parameter.per_channel, factor)},
         {"stderr", Numbers(fitted.standard_error, parameter.per_channel, factor)},
         {"stderr_clustered", Numbers(fitted.standard_error_clustered, parameter.per_channel, factor)},
+        {"clustered_freedom", Numbers(fitted.freedom, parameter.per_channel, 1)},
         {"unit", parameter.unit},
         {"free", fitted.free},
         {"at_bound", fitted.at_bound}};
@@ -66,15 +67,21 @@ Json SlopeSpaceToJson(const Material& material) {
   return lobes;
 }
 
-Json CovarianceToJson(const Material& material) {
-  const std::size_t n = material.covariance_names.size();
+Json MatrixToJson(const std::vector<double>& entries, std::size_t n) {
   Json matrix = Json::array();
   for (std::size_t i = 0; i < n; ++i) {
     Json row = Json::array();
-    for (std::size_t j = 0; j < n; ++j) row.push_back(Number(material.covariance[i * n + j]));
+    for (std::size_t j = 0; j < n; ++j) row.push_back(Number(entries[i * n + j]));
     matrix.push_back(row);
   }
-  return {{"names", material.covariance_names}, {"matrix", matrix}};
+  return matrix;
+}
+
+Json CovarianceToJson(const Material& material) {
+  const std::size_t n = material.covariance_names.size();
+  Json covariance = {{"names", material.covariance_names}, {"matrix", MatrixToJson(material.covariance, n)}};
+  if (!material.covariance_clustered.empty()) covariance["clustered"] = MatrixToJson(material.covariance_clustered, n);
+  return covariance;
 }
 
 Json QualityToJson(const Material& material) {
@@ -166,6 +173,19 @@ class Reader {
     }
     return numbers;
   }
+  // n x n, row by row; NaN for null.
+  std::vector<double> GetMatrix(const Json& object, const char* name, std::size_t n) const {
+    std::vector<double> entries;
+    for (const Json& row : Member(object, name)) {
+      for (const Json& entry : row)
+        entries.push_back(entry.is_number() ? entry.get<double>() : std::numeric_limits<double>::quiet_NaN());
+    }
+    if (entries.size() != n * n) {
+      Fail(fmt::format("member '{}' of the covariance has {} entries, {} belong to its {} names", name, entries.size(),
+                       n * n, n));
+    }
+    return entries;
+  }
   const Json& root() const { return json_; }
 
  private:
@@ -243,6 +263,26 @@ SelTable ReadSel(const Reader& reader, std::size_t channels) {
   return table;
 }
 
+// Values that a model can be evaluated at: wider than the bounds of a fit where a recipe may widen them or where slope
+// coordinates go beyond them.
+void CheckRange(const Reader& reader, const Parameter& parameter, double value) {
+  constexpr double kWidest = 10;  // of the slope coordinates
+  const bool is_angle = parameter.unit == "deg", is_shape = parameter.group == ParameterGroup::kShape;
+  if (!std::isfinite(value)) reader.Fail(fmt::format("parameter '{}' has no finite value", parameter.json_name));
+  const double factor = InsideFactor(parameter);
+  const double slack = is_angle ? 1e-9 : 0;  // rounding of degrees
+  if (is_shape && !is_angle && !(value > 0 && value <= std::max(kWidest, parameter.high))) {
+    reader.Fail(fmt::format("parameter '{}' is {:g}; it must be above 0 and at most {:g}", parameter.json_name, value,
+                            std::max(kWidest, parameter.high)));
+  }
+  if (is_angle && !(value >= parameter.low - slack && value <= parameter.high + slack)) {
+    reader.Fail(fmt::format("parameter '{}' is {:g}; it must lie in [{:g}, {:g}]", parameter.json_name, value / factor,
+                            parameter.low / factor, parameter.high / factor));
+  }
+  if (!is_shape && value < 0)
+    reader.Fail(fmt::format("parameter '{}' is {:g}; it must not be below 0", parameter.json_name, value));
+}
+
 void ReadParameters(const Reader& reader, Material* material) {
   const Json& json = reader.Member(reader.root(), "parameters");
   for (const Parameter& parameter : Parameters(material->model)) {
@@ -252,6 +292,7 @@ void ReadParameters(const Reader& reader, Material* material) {
     fitted.values = reader.GetNumbers(entry, "value", factor);
     fitted.standard_error = reader.GetNumbers(entry, "stderr", factor);
     fitted.standard_error_clustered = reader.GetNumbers(entry, "stderr_clustered", factor);
+    if (entry.contains("clustered_freedom")) fitted.freedom = reader.GetNumbers(entry, "clustered_freedom", 1);
     fitted.free = reader.Get<bool>(entry, "free");
     fitted.at_bound = reader.Get<bool>(entry, "at_bound");
     const std::size_t expected = parameter.per_channel ? material->channels.size() : 1;
@@ -260,7 +301,7 @@ void ReadParameters(const Reader& reader, Material* material) {
                               fitted.values.size(), expected));
     }
     for (const double value : fitted.values) {
-      if (!std::isfinite(value)) reader.Fail(fmt::format("parameter '{}' has no finite value", parameter.json_name));
+      CheckRange(reader, parameter, value);
     }
     material->parameters.push_back(fitted);
   }
@@ -275,12 +316,9 @@ void ReadRest(const Reader& reader, Material* material) {
   }
   const Json& covariance = reader.Member(root, "covariance");
   material->covariance_names = reader.Get<std::vector<std::string>>(covariance, "names");
-  for (const Json& row : reader.Member(covariance, "matrix")) {
-    for (const Json& entry : row) {
-      material->covariance.push_back(entry.is_number() ? entry.get<double>()
-                                                       : std::numeric_limits<double>::quiet_NaN());
-    }
-  }
+  const std::size_t n = material->covariance_names.size();
+  material->covariance = reader.GetMatrix(covariance, "matrix", n);
+  if (covariance.contains("clustered")) material->covariance_clustered = reader.GetMatrix(covariance, "clustered", n);
   material->degenerate = reader.Get<std::vector<std::string>>(root, "degenerate");
   const Json& quality = reader.Member(root, "quality");
   material->samples_read = reader.Get<std::size_t>(quality, "samples_read");

@@ -22,6 +22,8 @@ struct FittedParameter {
   // Standard error where the samples of one incident direction are taken as dependent (sandwich, clustered by
   // incidence). NaN as above, or with fewer than two incidences.
   std::vector<double> standard_error_clustered;
+  // Degrees of freedom of that error: 95 % within this quantile of Student's t. NaN where it is NaN.
+  std::vector<double> freedom;
   bool free = true;
   bool at_bound = false;
 };
@@ -69,10 +71,10 @@ struct Material {
   std::vector<double> wavelengths_nm;
   std::vector<FittedParameter> parameters;  // in the order of Parameters(model)
 
-  // Names of the free entries (JSON names, per-channel ones with "[R]"), outside units, and their covariance,
-  // row-major.
+  // Names of the free entries (JSON names, per-channel ones with "[R]"), and in outside units their covariances, of the
+  // standard errors and of the clustered ones (empty with fewer than two incidences), row-major.
   std::vector<std::string> covariance_names;
-  std::vector<double> covariance;
+  std::vector<double> covariance, covariance_clustered;
   // Slope-space form of each lobe: slope_x, slope_y, alpha_x, alpha_y (standard widths in slope), r.
   std::vector<std::vector<double>> slope_space;
 

@@ -14,6 +14,9 @@ constexpr double kOneSigma = 0.6826894921370859;  // probability within one stan
 // Quantile of the normal distribution that one of 1000 numbers exceeds on either side.
 constexpr double kChance = 3.290526731491926;
 
+// Errors so large are lost: 6 standard deviations of a normal distribution, and what is as rare under Student's t.
+constexpr double kLostSigmas = 6, kLost = 9.865876450376946e-10;
+
 struct Moments {
   std::size_t count = 0;
   double sum = 0, squares = 0;
@@ -77,9 +80,10 @@ EntryCalibration CalibrateEntry(const Entry& entry, std::size_t e, const std::ve
     const double cluster_sigma = trial.standard_error_clustered[e];
     // Without noise the standard errors are rounding, too.
     const double rounding = 1e-9 * std::max(1.0, std::fabs(trial.truth[e]));
-    if (std::fabs(error) > 6 * (judge_clustered ? cluster_sigma : sigma) + rounding) ++result.lost;
-    if (cluster_sigma > 0 && trial.incidences >= 2)
-      clustered.Add(error, cluster_sigma, static_cast<double>(trial.incidences) - 1);
+    const double limit =
+        judge_clustered ? StudentTQuantile(1 - kLost, trial.freedom[e]) * cluster_sigma : kLostSigmas * sigma;
+    if (std::fabs(error) > limit + rounding) ++result.lost;
+    if (cluster_sigma > 0) clustered.Add(error, cluster_sigma, trial.freedom[e]);
   }
   result.bias = errors.mean();
   result.spread = errors.deviation();

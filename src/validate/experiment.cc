@@ -86,6 +86,7 @@ Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measure
       trial.value.push_back(fitted.values[entry.channel] / entry.factor);
       trial.standard_error.push_back(fitted.standard_error[entry.channel] / entry.factor);
       trial.standard_error_clustered.push_back(fitted.standard_error_clustered[entry.channel] / entry.factor);
+      trial.freedom.push_back(fitted.freedom[entry.channel]);
       trial.free.push_back(fitted.free);
       trial.at_bound.push_back(fitted.at_bound);
       trial.truth.push_back(kNan);

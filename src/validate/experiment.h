@@ -33,7 +33,7 @@ struct Trial {
   bool done = false;          // false: not run, the validation was interrupted
   std::string error;          // not empty: the fit refused the measurement
   std::vector<double> truth;  // NaN for entries that the truth's model does not have
-  std::vector<double> value, standard_error, standard_error_clustered;
+  std::vector<double> value, standard_error, standard_error_clustered, freedom;
   std::vector<bool> free, at_bound;
   bool converged = false, determined = false;
   std::vector<std::string> degenerate;

@@ -61,7 +61,7 @@ Material MaterialOf(const Truth& truth) {
     FittedParameter parameter;
     parameter.values = values;
     parameter.standard_error.assign(values.size(), kNan);
-    parameter.standard_error_clustered = parameter.standard_error;
+    parameter.standard_error_clustered = parameter.freedom = parameter.standard_error;
     parameter.free = false;
     material.parameters.push_back(parameter);
   }

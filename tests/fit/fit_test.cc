@@ -7,6 +7,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/math/directions.h"
+#include "lobefit/measurement/incidence.h"
 
 namespace lobefit {
 namespace {
@@ -156,6 +157,41 @@ TEST(Fit, SaysWhatTheDataDoNotDetermine) {
   const Material material = Fit(recipe, {}, &measurement);
   EXPECT_FALSE(material.termination.determined);
   EXPECT_FALSE(material.degenerate.empty());
+  // What is named has no error; a tiny one would be believed.
+  for (const std::size_t i : {0U, 5U, 6U}) {
+    EXPECT_TRUE(std::isnan(material.parameters[i].standard_error[0])) << i;
+    EXPECT_TRUE(std::isnan(material.parameters[i].standard_error_clustered[0])) << i;
+  }
+}
+
+// One sample an incidence, as in pictures of a curved sample: memory is that of the samples, not of samples times
+// incidences.
+TEST(Fit, EverySampleMayHaveAnIncidenceOfItsOwn) {
+  const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.3, 0.3, 0, 0, 0);
+  const Reflectance reflectance(truth.model, truth.values, truth.channels.size());
+  Measurement measurement;
+  measurement.channels.names = truth.channels;
+  measurement.source = "pairs";
+  measurement.samples.values.resize(3);
+  constexpr int kPairs = 5000;
+  for (int k = 0; k < kPairs; ++k) {
+    // A low-discrepancy sequence on both hemispheres [Roberts 2018, R4].
+    const auto part = [k](double step) { return std::fmod(0.5 + step * k, 1.0); };
+    const Vec3 wi = FromSpherical(std::acos(1 - 0.8 * part(0.8566748838545029)), 2 * kPi * part(0.733891856627126)),
+               wo = FromSpherical(std::acos(1 - 0.8 * part(0.6287067210378087)), 2 * kPi * part(0.5385972572236101));
+    double f_r[3];
+    reflectance.Evaluate(wi, wo, f_r);
+    for (double& value : f_r) value *= 1 + 0.05 * std::sin(12.9898 * k);
+    measurement.samples.Append(wi, wo, f_r, static_cast<std::uint32_t>(k));
+  }
+  const Material material = Fit(DefaultRecipe(truth.model, "ggx"), {}, &measurement);
+  EXPECT_TRUE(material.termination.determined);
+  EXPECT_GT(GroupByIncidence(measurement).wi.size(), 4500U);
+  for (const std::size_t i : {0U, 5U, 6U}) {
+    const FittedParameter& p = material.parameters[i];
+    EXPECT_NEAR(p.standard_error_clustered[0], p.standard_error[0], 0.1 * p.standard_error[0]) << i;
+    EXPECT_GT(p.freedom[0], 100) << i;
+  }
 }
 
 TEST(Fit, SaysThatNoiseAboutZeroAndZeroAreNotAMaterial) {

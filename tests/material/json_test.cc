@@ -66,14 +66,26 @@ TEST(MaterialJson, RefusesWhatIsNotAMaterial) {
     return json.dump();
   };
   using Pointer = nlohmann::json::json_pointer;
-  for (const std::string& bad :
-       {std::string(), std::string("{"), std::string("[]"), std::string("{\"format\": \"other\"}"),
-        good.substr(0, good.size() / 2), without("model"), without("parameters"), without("channels"),
-        with_value(Pointer("/format_version"), "2.0"), with_value(Pointer("/model/lobes/0/ndf"), "phong"),
-        with_value(Pointer("/parameters/alpha_x/value"), "0.3"),
-        with_value(Pointer("/parameters/f0/value"), {0.1, 0.2}),
-        with_value(Pointer("/parameters/alpha_x/value"), nullptr),
-        with_value(Pointer("/channels"), nlohmann::json::array())}) {
+  for (const std::string& bad : {std::string(),
+                                 std::string("{"),
+                                 std::string("[]"),
+                                 std::string("{\"format\": \"other\"}"),
+                                 good.substr(0, good.size() / 2),
+                                 without("model"),
+                                 without("parameters"),
+                                 without("channels"),
+                                 with_value(Pointer("/format_version"), "2.0"),
+                                 with_value(Pointer("/model/lobes/0/ndf"), "phong"),
+                                 with_value(Pointer("/parameters/alpha_x/value"), "0.3"),
+                                 with_value(Pointer("/parameters/f0/value"), {0.1, 0.2}),
+                                 with_value(Pointer("/parameters/alpha_x/value"), nullptr),
+                                 with_value(Pointer("/parameters/alpha_x/value"), 0),
+                                 with_value(Pointer("/parameters/alpha_x/value"), -0.2),
+                                 with_value(Pointer("/parameters/alpha_x/value"), 1e300),
+                                 with_value(Pointer("/parameters/theta_z_deg/value"), 91),
+                                 with_value(Pointer("/parameters/f0/value/1"), -0.1),
+                                 with_value(Pointer("/covariance/matrix/0"), nlohmann::json::array()),
+                                 with_value(Pointer("/channels"), nlohmann::json::array())}) {
     EXPECT_THROW(MaterialFromJson(bad, "m.json"), InputError) << bad.substr(0, 60);
   }
 }

@@ -41,6 +41,7 @@ std::vector<Trial> Invented(const Experiment& experiment, double factor, std::si
     trial.truth.assign(entries, 1);
     trial.standard_error.assign(entries, 0.1);
     trial.standard_error_clustered.assign(entries, 0.1);
+    trial.freedom.assign(entries, 35);
     for (std::size_t e = 0; e < entries; ++e) trial.value.push_back(1 + 0.1 * factor * random.Normal());
   }
   return trials;

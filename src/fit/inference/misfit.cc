@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/core/ndf/off_center.h"
+#include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/metric/transform.h"
 #include "lobefit/fit/search/symmetric_eigen.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/math/student_t.h"
@@ -100,41 +102,66 @@ std::vector<int> FreeCoordinates(const Layout& layout, const std::vector<double>
   return place;
 }
 
-// Of every stride-th piece of 256 samples.
+// Change of the residuals of a piece with the logarithm of all its values, [channel] as rows of `piece`: what a lamp
+// that has drifted does to an incidence.
+std::vector<Eigen::VectorXd> GainRows(const Problem& problem, const KernelModel& kernel, const Samples& samples,
+                                      std::size_t begin, const SampleRows& piece) {
+  const auto count = static_cast<std::size_t>(piece.root_rho.size());
+  std::vector<std::vector<double>> f;
+  ModelValues(problem.kernel_samples(), kernel, begin, begin + count, &f);
+  std::vector<Eigen::VectorXd> rows;
+  std::vector<double> residual(count), slope(count);
+  for (std::size_t c = 0; c < f.size(); ++c) {
+    Residuals(kernel.transform, f[c].data(), samples.wi_z.data() + begin, samples.values[c].data() + begin, nullptr,
+              count, residual.data(), slope.data());
+    rows.emplace_back(piece.root_rho.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      rows[c](k) = std::sqrt(problem.Weight(begin + i)) * piece.root_rho(k) * slope[i] * f[c][i];
+    }
+  }
+  return rows;
+}
+
+// Of every stride-th piece of 256 samples. Not `by_incidence`: samples are groups of their own, and each incidence has
+// a gain as a further coordinate.
 Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<double>& u, const Samples& samples,
              const Incidences& incidences, bool by_incidence, std::size_t stride) {
-  constexpr std::size_t kPiece = 256;
   const KernelModel kernel = layout.ToKernel(u.data());
-  Eigen::Index n = 0;
-  const std::vector<int> place = FreeCoordinates(layout, u, &n);
+  Eigen::Index free = 0;
+  const std::vector<int> place = FreeCoordinates(layout, u, &free);
+  const Eigen::Index n = free + (by_incidence ? 0 : static_cast<Eigen::Index>(incidences.wi.size()));
   Sums sums;
   sums.hessian.setZero(n, n);
   sums.bin_rows.setZero(kBins, n);
   const Group empty = {{}, {}, Eigen::VectorXd::Zero(n)};
   if (by_incidence) sums.groups.assign(incidences.wi.size(), empty);
-  std::vector<std::vector<double>> columns;
+  const std::vector<std::uint32_t> order = FileOrder(problem.size());
+  RowEvaluator evaluator(problem.kernel_samples(), kernel);
+  SampleRows piece;
+  std::vector<Eigen::VectorXd> gains;
+  std::vector<std::vector<int>> coordinates;
+  for (std::size_t c = 0; c < problem.channels(); ++c) coordinates.push_back(CoordinatesOfColumns(layout, c));
   Eigen::VectorXd row(n), rows(n);
   for (std::size_t begin = 0; begin < problem.size(); begin += kPiece * stride) {
     const std::size_t count = std::min(problem.size(), begin + kPiece) - begin;
-    Columns(problem.kernel_samples(), kernel, begin, begin + count, &columns);
+    evaluator.Evaluate(order, begin, begin + count, &piece);
+    if (!by_incidence) gains = GainRows(problem, kernel, samples, begin, piece);
     for (std::size_t i = 0; i < count; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const std::uint32_t incidence = incidences.group[begin + i];
       if (!by_incidence) sums.groups.push_back(empty);
-      Group& group = by_incidence ? sums.groups[incidences.group[begin + i]] : sums.groups.back();
+      Group& group = by_incidence ? sums.groups[incidence] : sums.groups.back();
       double residual = 0;
       rows.setZero();
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        const double* value = columns[c].data() + i;
+      for (std::size_t c = 0; c < coordinates.size(); ++c) {
         row.setZero();
-        std::size_t j = 0;
-        for (; j < layout.shape_size(); ++j) {
-          if (place[j] >= 0) row(place[j]) += value[j * count];
+        for (std::size_t j = 0; j < coordinates[c].size(); ++j) {
+          const int to = coordinates[c][j] < 0 ? -1 : place[static_cast<std::size_t>(coordinates[c][j])];
+          if (to >= 0) row(to) += piece.rows[c](k, static_cast<Eigen::Index>(j));
         }
-        for (const Layout::Linear& linear : layout.linear(c)) {
-          const int to = linear.index < 0 ? -1 : place[static_cast<std::size_t>(linear.index)];
-          if (to >= 0) row(to) += value[j * count];
-          ++j;
-        }
-        const double r = value[j * count];
+        if (!by_incidence) row(free + incidence) += gains[c](k);
+        const double r = piece.residuals[c](k);
         residual += r;
         sums.squares += r * r;
         sums.residuals += 1;
@@ -196,13 +223,15 @@ Misfit TestMisfit(const Problem& problem, const Layout& layout, const std::vecto
     if (!(count > 0)) continue;
     const double groups = count * count / count2, mean = sum / count;
     if (groups < kFewestGroups) continue;
-    ++tested;
     double variance = 0;
     for (std::size_t g = 0; g < cells.size(); ++g) {
       const double excess = cells[g] - mean * sums.groups[g].count[bin];
       variance += excess * excess;
     }
     variance *= groups / (groups - 1);
+    // What the parameters and gains follow wherever it goes leaves rounding.
+    if (!(variance > 1e-12 * rms * rms * count)) continue;
+    ++tested;
     const double t = sum / std::sqrt(variance);
     const double probability = std::isfinite(t) ? 2 * StudentTCdf(-std::fabs(t), groups - 1) : 1;
     if (probability >= least) continue;

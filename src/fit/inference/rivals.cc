@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "lobefit/core/ndf/off_center.h"
+#include "lobefit/fit/inference/sample_rows.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
 
@@ -20,12 +21,50 @@ namespace {
 constexpr double kLikelihoodRatio = 3.841458820694124;
 constexpr double kSigmas = 2;
 
-// The largest cost that fits as well as the best.
-double AsGood(const Problem& problem, const Layout& layout, double best) {
+// What a residual adds to twice the cost on average where it decides nothing: its variance; with a loss the variance of
+// its pull over the mean slope of the pull, for which twice a difference of costs is distributed as the likelihood
+// ratio [Huber 1981, section 6.3].
+double UnitOfCost(const Problem& problem, const Layout& layout, const Solution& best) {
   const auto residuals = static_cast<double>(problem.size() * problem.channels());
-  const double variance = 2 * best / std::max(1.0, residuals - static_cast<double>(layout.size()));
+  const double freedom = std::max(1.0, residuals - static_cast<double>(layout.size()));
+  if (layout.recipe().loss == Loss::kNone) return 2 * best.cost / freedom;
+  const KernelModel kernel = layout.ToKernel(best.u.data());
+  RowEvaluator evaluator(problem.kernel_samples(), kernel);
+  const std::vector<std::uint32_t> order = FileOrder(problem.size());
+  SampleRows piece;
+  double pull2 = 0, slope = 0;
+  for (std::size_t begin = 0; begin < problem.size(); begin += kPiece) {
+    evaluator.Evaluate(order, begin, std::min(problem.size(), begin + kPiece), &piece);
+    for (Eigen::Index i = 0; i < piece.root_rho.size(); ++i) {
+      const double rho1 = piece.root_rho(i) * piece.root_rho(i);
+      double s = 0;  // rho' times the squared residual
+      for (const Eigen::VectorXd& r : piece.residuals) s += r(i) * r(i);
+      pull2 += rho1 * s;
+      slope += rho1 * static_cast<double>(problem.channels()) + rho1 * piece.curvature(i) * s;
+    }
+  }
+  return slope > 0 ? pull2 / slope * residuals / freedom : 2 * best.cost / freedom;
+}
+
+// How many times the variance of the parameters is that of independent samples, at most: samples of an incidence that
+// err together tell less than their number says.
+double Dependence(const Material& material) {
+  double dependence = 1;
+  for (const FittedParameter& parameter : material.parameters) {
+    for (std::size_t c = 0; c < parameter.standard_error.size(); ++c) {
+      const double ratio = parameter.standard_error_clustered[c] / parameter.standard_error[c];
+      if (std::isfinite(ratio)) dependence = std::max(dependence, ratio * ratio);
+    }
+  }
+  return dependence;
+}
+
+// The largest cost that fits as well as the best.
+double AsGood(const Problem& problem, const Layout& layout, const Solution& best, const Material& material) {
+  const auto residuals = static_cast<double>(problem.size() * problem.channels());
   // Of values without noise nothing but rounding is left: residuals of 1e-12 on average.
-  return best + kLikelihoodRatio / 2 * variance + 1e-24 * residuals;
+  return best.cost + kLikelihoodRatio / 2 * UnitOfCost(problem, layout, best) * Dependence(material) +
+         1e-24 * residuals;
 }
 
 // The lobe seen in the vertical mirror through `azimuth`.
@@ -74,8 +113,8 @@ std::string Differences(const Layout& layout, const std::vector<double>& u, Mate
                                 fitted.values[0] / InsideFactor(parameters[i])));
   }
   for (const std::size_t i : differing) {
-    material->parameters[i].standard_error =
-        material->parameters[i].standard_error_clustered = {std::numeric_limits<double>::quiet_NaN()};
+    material->parameters[i].standard_error = material->parameters[i].standard_error_clustered =
+        material->parameters[i].freedom = {std::numeric_limits<double>::quiet_NaN()};
   }
   return fmt::format("{}", fmt::join(words, ", "));
 }
@@ -85,7 +124,7 @@ std::string Differences(const Layout& layout, const std::vector<double>& u, Mate
 bool FlagRivals(const Problem& problem, const Layout& layout, const Samples& samples,
                 const std::vector<DistinctMinimum>& minima, ThreadPool* pool, Material* material) {
   const Solution& best = minima[0].solution;
-  const double as_good = AsGood(problem, layout, best.cost);
+  const double as_good = AsGood(problem, layout, best, *material);
   std::vector<std::string> found;
   if (const std::optional<double> plane = PlaneAzimuth(samples)) {
     const std::vector<double> image = MirrorImage(layout, best.u, *plane);

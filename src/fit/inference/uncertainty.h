@@ -1,4 +1,4 @@
-// Standard errors and what the data do not determine.
+// Standard errors of what is reported, and what the data do not determine.
 #pragma once
 
 #include <string>
@@ -12,23 +12,28 @@
 
 namespace lobefit {
 
-// Covariances of the solver's coordinates: sandwiches H^-1 B H^-1 with H = J^T J and B = sum of s s^T. A fit bends
-// towards what weighs much in it and leaves too small residuals there; they are set right by the leverages: HC3 for
-// samples [MacKinnon and White 1985], CR2 for clusters [Bell and McCaffrey 2002]. In large problems, where no sample
-// weighs much, the factors N / (N - p) and G / (G - 1) stand for them (HC1, CR1).
+// Covariances of the reported entries (Layout::Report, flattened; inside units): sandwiches A^-1 B A^-1 with A the
+// second derivatives of the cost to second order in the loss (bread.h) and B from the gradients of samples or of
+// incidences, set right for how far the fit bends towards each (sandwich.h), whatever their number.
+//
+// Rows and columns are NaN for an entry that has a part in an undetermined direction, or that is not differentiable
+// (the angles of equal alphas); 0 for what is fixed or held at a bound.
 struct Uncertainty {
-  // s = J^T r of one sample over its channels: valid where the noise differs from sample to sample, but samples are
-  // independent. Errors are normal: 95 % within 1.96 standard errors.
+  // Samples taken as independent, of noise that may differ from sample to sample. Errors are normal: 95 % within 1.96
+  // standard errors.
   Eigen::MatrixXd covariance;
-  // s = J^T r of one incident direction: samples of one incidence may depend on each other. Zero rows with fewer than
-  // two incidences. Estimated from G incidences: 95 % within the quantile of Student's t with G - 1 degrees of freedom.
+  // Samples of one incident direction may depend on each other. 95 % within the quantile of Student's t with `freedom`
+  // degrees of freedom. Zero with fewer than two incidences.
   Eigen::MatrixXd clustered;
   bool has_clusters = false;
-  // Coordinates at a bound: held, variance 0.
-  std::vector<bool> at_bound;
-  // False where some direction in parameter space does not change the residuals (reciprocal condition below 1e-10).
-  bool determined = true;
-  std::vector<std::string> degenerate;  // those directions, in words
+  std::vector<double> freedom;  // [entry]; NaN where there is no error
+  // `covariance` of the solver's coordinates, 0 for what is held, without the undetermined directions.
+  Eigen::MatrixXd of_coordinates;
+  std::vector<bool> at_bound;           // [coordinate] held: the cost would go on falling beyond the bound
+  std::vector<bool> undetermined;       // [entry]
+  std::vector<std::string> degenerate;  // the undetermined directions, in words
+
+  bool determined() const { return degenerate.empty(); }
 };
 
 Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, const std::vector<double>& u,

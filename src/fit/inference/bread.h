@@ -1,0 +1,42 @@
+// The bread of the sandwich covariance: the matrix A of second derivatives of the cost, factored as A^-1 = W W^T, and
+// the directions in which it is flat.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "lobefit/base/parallel.h"
+#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/objective/problem.h"
+
+namespace lobefit {
+
+// A = sum over samples of rho' J^T J + 2 rho'' (J^T r)(J^T r)^T: Gauss and Newton's matrix to second order in the loss.
+// Second derivatives of the model times residuals are left out.
+//
+// A is an arrow: coordinates of one channel (its F0, its albedo) meet those of another only through the rest, the
+// border. W has the same form, so that a sample's row of one channel has entries for the border and for that channel
+// alone, and a fit of many channels costs no more a channel than one of few. A loss takes all channels of a sample
+// together: then all is border.
+struct Bread {
+  // Columns of W: the border's, then channel by channel those of its own coordinates.
+  Eigen::Index border = 0;
+  std::vector<Eigen::Index> first, own;  // [channel]: where its own begin, and how many there are
+  Eigen::MatrixXd whitening;             // W, coordinates x columns; rows of held coordinates are 0
+  // [channel]: a row of the kernel's columns without the residual (KernelModel), times this, is the row times W: the
+  // border's entries, then the channel's own.
+  std::vector<Eigen::MatrixXd> whiten_row;
+  std::vector<bool> at_bound;  // [coordinate] held at a bound: the cost would go on falling beyond it
+  // [coordinate] has a part in a direction that is flat: it has no error.
+  std::vector<bool> undetermined;
+  std::vector<std::string> degenerate;  // the flat directions, in words
+
+  Eigen::Index size() const { return whitening.cols(); }
+};
+
+Bread FactorBread(const Problem& problem, const Layout& layout, const std::vector<double>& u, ThreadPool* pool);
+
+}  // namespace lobefit

@@ -1,0 +1,90 @@
+#include "lobefit/fit/inference/clusters.h"
+
+#include <cmath>
+
+#include "lobefit/fit/search/symmetric_eigen.h"
+
+namespace lobefit {
+namespace {
+
+constexpr double kAlone = 1e-9;
+constexpr std::size_t kMostExact = 100;
+// Numbers of 8 bytes that the exact degrees of freedom may store.
+constexpr double kMostStored = 4e6;
+
+}  // namespace
+
+Eigen::MatrixXd InverseRootTimes(const Eigen::MatrixXd& curvature, const Eigen::MatrixXd& vectors) {
+  // The power series or the eigenvectors, whichever takes fewer operations.
+  const double norm = curvature.norm();
+  const double terms = norm < 1 ? 36 / -std::log(norm) : INFINITY;
+  if (terms < 10.0 * static_cast<double>(curvature.rows())) {
+    Eigen::MatrixXd term = vectors, sum = vectors;
+    for (int k = 1; term.squaredNorm() > 1e-32 * sum.squaredNorm(); ++k) {
+      term = (curvature * term * ((k - 0.5) / k)).eval();
+      sum += term;
+    }
+    return sum;
+  }
+  const SymmetricEigen eigen = DecomposeSymmetric(curvature);
+  const Eigen::VectorXd factor =
+      (1 - eigen.values.array()).unaryExpr([](double x) { return x > kAlone ? 1 / std::sqrt(x) : 0.0; });
+  return eigen.vectors * (factor.asDiagonal() * (eigen.vectors.transpose() * vectors));
+}
+
+ClusterTally::ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters)
+    : numbers_(&numbers),
+      exact_(clusters <= kMostExact &&
+             static_cast<double>(clusters) * static_cast<double>(numbers.size()) <= kMostStored),
+      filling_(Eigen::MatrixXd::Zero(numbers.rows(), numbers.rows())) {
+  h_ = h2_ = e_ = e2_ = Eigen::ArrayXd::Zero(numbers.cols());
+}
+
+void ClusterTally::Add(const Cluster& cluster) {
+  const Eigen::VectorXd inflated = InverseRootTimes(cluster.curvature, cluster.score);
+  filling_.selfadjointView<Eigen::Lower>().rankUpdate(inflated);
+  if (exact_) {
+    const Eigen::MatrixXd root = InverseRootTimes(cluster.curvature, *numbers_);
+    influence_.push_back(cluster.curvature * root);
+    const Eigen::MatrixXd& influence = influence_.back();
+    const Eigen::ArrayXd h = (root - influence).cwiseProduct(influence).colwise().sum().transpose();
+    h_ += h;
+    h2_ += h.square();
+    return;
+  }
+  const Eigen::ArrayXd h = numbers_->cwiseProduct(cluster.curvature * *numbers_).colwise().sum().transpose();
+  h_ += h;
+  h2_ += h.square();
+  const Eigen::ArrayXd length = numbers_->colwise().squaredNorm().transpose();
+  const Eigen::ArrayXd part = (h / length).min(1 - kAlone);
+  const Eigen::ArrayXd e = part.square() / (1 - part);
+  e_ += e;
+  e2_ += e.square();
+}
+
+void ClusterTally::Merge(const ClusterTally& other) {
+  filling_ += other.filling_;
+  h_ += other.h_;
+  h2_ += other.h2_;
+  e_ += other.e_;
+  e2_ += other.e2_;
+  influence_.insert(influence_.end(), other.influence_.begin(), other.influence_.end());
+}
+
+Eigen::VectorXd ClusterTally::DegreesOfFreedom() const {
+  // The variance of a number is estimated as a quadratic form of the residuals whose matrix has the trace sum of h, and
+  // whose square the trace sum of h^2 and of the squared products of the influences of any two clusters.
+  Eigen::ArrayXd products = Eigen::ArrayXd::Zero(numbers_->cols());
+  if (exact_) {
+    for (std::size_t g = 0; g < influence_.size(); ++g) {
+      for (std::size_t k = 0; k < g; ++k)
+        products += 2 * influence_[g].cwiseProduct(influence_[k]).colwise().sum().transpose().array().square();
+    }
+  } else {
+    const Eigen::ArrayXd length = numbers_->colwise().squaredNorm().transpose();
+    products = (e_.square() - e2_) * length.square();
+  }
+  return h_.square() / (h2_ + products);
+}
+
+}  // namespace lobefit

@@ -1,0 +1,71 @@
+#include "lobefit/fit/inference/sample_rows.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace lobefit {
+
+std::vector<std::uint32_t> FileOrder(std::size_t count) {
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  return order;
+}
+
+std::vector<int> CoordinatesOfColumns(const Layout& layout, std::size_t c) {
+  std::vector<int> coordinates;
+  for (std::size_t k = 0; k < layout.shape_size(); ++k) coordinates.push_back(static_cast<int>(k));
+  for (const Layout::Linear& linear : layout.linear(c)) coordinates.push_back(linear.index);
+  return coordinates;
+}
+
+RowEvaluator::RowEvaluator(const KernelSamples& samples, const KernelModel& model)
+    : samples_(samples), model_(model), loss_(model.loss) {
+  model_.loss = Loss::kNone;
+}
+
+void RowEvaluator::Evaluate(const std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
+                            SampleRows* to) {
+  // Copies, so that the kernel finds the samples side by side.
+  KernelSamples piece = samples_;
+  std::size_t next = 0;
+  const auto gather = [&](const double* from) -> const double* {
+    if (from == nullptr) return nullptr;
+    if (gathered_.size() == next) gathered_.emplace_back();
+    std::vector<double>& array = gathered_[next++];
+    array.resize(end - begin);
+    for (std::size_t i = begin; i < end; ++i) array[i - begin] = from[order[i]];
+    return array.data();
+  };
+  for (const double*& direction : piece.direction) direction = gather(direction);
+  for (const double*& measured : piece.measured) measured = gather(measured);
+  piece.weight = gather(piece.weight);
+  piece.solid_angle = gather(piece.solid_angle);
+  piece.count = end - begin;
+  Columns(piece, model_, 0, piece.count, &columns_);
+
+  const auto count = static_cast<Eigen::Index>(piece.count);
+  const auto columns = static_cast<Eigen::Index>(model_.columns()) - 1;
+  to->rows.resize(model_.channels);
+  to->residuals.resize(model_.channels);
+  to->curvature.setZero(count);
+  to->root_rho.setOnes(count);
+  for (std::size_t c = 0; c < model_.channels; ++c) {
+    to->rows[c] = Eigen::Map<const Eigen::MatrixXd>(columns_[c].data(), count, columns);
+    to->residuals[c] = Eigen::Map<const Eigen::VectorXd>(columns_[c].data() + columns * count, count);
+  }
+  if (loss_ == Loss::kNone) return;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    double s = 0;
+    for (const Eigen::VectorXd& r : to->residuals) s += r(i) * r(i);
+    const LossValue rho = EvaluateLoss(loss_, model_.loss_scale, s);
+    // Beyond its scale a loss may count a sample for nothing.
+    if (rho.first > 0) to->curvature(i) = 2 * rho.second / (rho.first * rho.first);
+    to->root_rho(i) = std::sqrt(rho.first);
+    for (std::size_t c = 0; c < model_.channels; ++c) {
+      to->rows[c].row(i) *= to->root_rho(i);
+      to->residuals[c](i) *= to->root_rho(i);
+    }
+  }
+}
+
+}  // namespace lobefit

@@ -1,0 +1,276 @@
+#include "lobefit/fit/inference/uncertainty.h"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tests/support/jet_model.h"
+#include "tests/support/synthetic.h"
+#include <Eigen/Dense>
+#include <ceres/jet.h>
+#include <ceres/loss_function.h>
+#include <gtest/gtest.h>
+
+#include "lobefit/measurement/incidence.h"
+
+namespace lobefit {
+namespace {
+
+constexpr int kSize = 5 + 6;
+using Jet = ceres::Jet<double, kSize>;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+// 60 samples of 5 incidences, 3 channels.
+Measurement SixtySamples() {
+  GoniometerLayout layout = StandardLayout();
+  layout.polar_angles.clear();
+  for (const double degrees : {10., 30., 50., 65., 75.}) layout.polar_angles.push_back(DegreesToRadians(degrees));
+  layout.azimuths = {0};
+  Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20), layout, 0.1, 5);
+  const Incidences incidences = GroupByIncidence(measurement);
+  std::vector<std::size_t> kept;
+  for (std::size_t g = 0; g < incidences.wi.size(); ++g) {
+    std::size_t seen = 0, taken = 0;
+    for (std::size_t i = 0; i < measurement.samples.size(); ++i) {
+      if (incidences.group[i] != g) continue;
+      if (seen++ % 6 == 0 && taken++ < 12) kept.push_back(i);
+    }
+  }
+  measurement.samples = measurement.samples.Subset(kept);
+  return measurement;
+}
+
+std::unique_ptr<ceres::LossFunction> CeresLoss(Loss loss, double scale) {
+  switch (loss) {
+    case Loss::kHuber:
+      return std::make_unique<ceres::HuberLoss>(scale);
+    case Loss::kCauchy:
+      return std::make_unique<ceres::CauchyLoss>(scale);
+    case Loss::kTukey:
+      return std::make_unique<ceres::TukeyLoss>(scale);
+    case Loss::kNone:
+      break;
+  }
+  return std::make_unique<ceres::TrivialLoss>();
+}
+
+Matrix Power(const Matrix& symmetric, double power) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(symmetric);
+  const Vector values = eigen.eigenvalues().array().pow(power);
+  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+// The covariances of the solver's coordinates by the textbook, every matrix of all residuals written out.
+struct Textbook {
+  Matrix hc3, cr2;
+  Vector freedom;  // of each row of `numbers`; without a loss
+};
+
+Textbook EvaluateTextbook(const Recipe& recipe, const Layout& layout, const Samples& samples,
+                          const Incidences& incidences, const std::vector<double>& u, const Matrix& numbers) {
+  const auto count = static_cast<Eigen::Index>(samples.size());
+  const KernelModel kernel = layout.ToKernel(u.data());
+  std::array<Jet, kSize> jets;
+  for (int k = 0; k < kSize; ++k) jets[static_cast<std::size_t>(k)] = Jet(u[static_cast<std::size_t>(k)], k);
+  Vector weight(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    const double sin_i = std::sqrt(1 - samples.wi_z[s] * samples.wi_z[s]),
+                 sin_o = std::sqrt(1 - samples.wo_z[s] * samples.wo_z[s]);
+    weight(i) = samples.weight.empty() ? 1.0 : samples.weight[s];
+    if (recipe.weighting == Weighting::kSolidAngle) weight(i) *= samples.solid_angle[s];
+    if (recipe.metric == Metric::kNgan) weight(i) *= sin_i * sin_o;
+    if (recipe.metric == Metric::kLowLog) weight(i) *= sin_i;
+  }
+  weight *= static_cast<double>(count) / weight.sum();
+  Matrix j(3 * count, kSize), score(count, kSize);
+  Vector r(3 * count);
+  std::vector<Matrix> part(samples.size());  // of A, a sample
+  Matrix a = Matrix::Zero(kSize, kSize);
+  const std::unique_ptr<ceres::LossFunction> loss = CeresLoss(recipe.loss, kernel.loss_scale);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    for (int c = 0; c < 3; ++c) {
+      const auto channel = static_cast<std::size_t>(c);
+      const Jet residual =
+          JetResidual(kernel.transform, JetModelValue(jets.data(), channel, samples.wi(s), samples.wo(s)),
+                      samples.values[channel][s], samples.wi(s));
+      j.row(3 * i + c) = std::sqrt(weight(i)) * residual.v.transpose();
+      r(3 * i + c) = std::sqrt(weight(i)) * residual.a;
+    }
+    double rho[3];
+    loss->Evaluate(r.segment(3 * i, 3).squaredNorm(), rho);
+    const Matrix rows = j.middleRows(3 * i, 3);
+    const Vector gradient = rows.transpose() * r.segment(3 * i, 3);
+    score.row(i) = rho[1] * gradient.transpose();
+    part[s] = rho[1] * rows.transpose() * rows + 2 * rho[2] * gradient * gradient.transpose();
+    a += part[s];
+  }
+  Textbook textbook;
+  textbook.hc3.setZero(kSize, kSize);
+  textbook.cr2.setZero(kSize, kSize);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Vector move = (a - part[static_cast<std::size_t>(i)]).fullPivLu().solve(score.row(i).transpose());
+    textbook.hc3 += move * move.transpose();
+  }
+  const Matrix inverse = a.inverse(), root = Power(a, -0.5);
+  const Matrix hat = j * inverse * j.transpose(), residual_maker = Matrix::Identity(3 * count, 3 * count) - hat;
+  const auto groups = static_cast<Eigen::Index>(incidences.wi.size());
+  std::vector<Matrix> columns(static_cast<std::size_t>(numbers.rows()), Matrix::Zero(3 * count, groups));
+  for (Eigen::Index g = 0; g < groups; ++g) {
+    std::vector<Eigen::Index> rows;
+    Matrix curvature = Matrix::Zero(kSize, kSize);
+    Vector sum = Vector::Zero(kSize);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (incidences.group[static_cast<std::size_t>(i)] != g) continue;
+      for (int c = 0; c < 3; ++c) rows.push_back(3 * i + c);
+      curvature += part[static_cast<std::size_t>(i)];
+      sum += score.row(i).transpose();
+    }
+    Vector move;
+    if (recipe.loss == Loss::kNone) {
+      // Bell and McCaffrey, with the residuals themselves.
+      const Matrix x = j(rows, Eigen::all);
+      const Matrix adjust = Power(residual_maker(rows, rows), -0.5);
+      move = inverse * x.transpose() * adjust * r(rows);
+      for (Eigen::Index k = 0; k < numbers.rows(); ++k) {
+        columns[static_cast<std::size_t>(k)].col(g) =
+            residual_maker(Eigen::all, rows) * adjust * x * inverse * numbers.row(k).transpose();
+      }
+    } else {
+      move = root * Power(Matrix::Identity(kSize, kSize) - root * curvature * root, -0.5) * root * sum;
+    }
+    textbook.cr2 += move * move.transpose();
+  }
+  textbook.freedom.resize(numbers.rows());
+  for (Eigen::Index k = 0; k < numbers.rows(); ++k) {
+    const Matrix& g = columns[static_cast<std::size_t>(k)];
+    const Matrix gg = g.transpose() * g;
+    textbook.freedom(k) = gg.trace() * gg.trace() / (gg * gg).trace();
+  }
+  return textbook;
+}
+
+enum class Weights { kNone, kOwn, kSolidAngle, kBoth };
+
+class EveryResidual : public testing::TestWithParam<std::tuple<Metric, Weights, Loss>> {};
+
+// Catches HC2 for HC3, CR1 for CR2, rho'' left out, a weight left out, a standard error wrong by any factor.
+TEST_P(EveryResidual, ErrorsAreTheTextbooks) {
+  const auto [metric, weights, loss] = GetParam();
+  Measurement measurement = SixtySamples();
+  Samples& samples = measurement.samples;
+  ASSERT_EQ(samples.size(), 60U);
+  Recipe recipe = DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "test");
+  recipe.metric = metric;
+  recipe.noise = {0.01, 0.05};
+  recipe.loss = loss;
+  recipe.loss_scale = 0.1;
+  recipe.weighting = Weighting::kCells;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto x = static_cast<double>(i);
+    if (weights == Weights::kOwn || weights == Weights::kBoth) samples.weight.push_back(1 + 0.5 * std::sin(x));
+    if (weights == Weights::kSolidAngle || weights == Weights::kBoth)
+      samples.solid_angle.push_back(1 + 0.7 * std::cos(x));
+  }
+  if (!samples.solid_angle.empty()) recipe.weighting = Weighting::kSolidAngle;
+  const Layout layout(recipe, measurement.channels.names);
+  const Problem problem(samples, recipe);
+  const Incidences incidences = GroupByIncidence(measurement);
+  ASSERT_EQ(incidences.wi.size(), 5U);
+  // Beside the truth, so that some residuals are beyond the loss's scale and some within.
+  std::vector<double> u = layout.FromShapes({{0.32, 0.13, 0.07, -0.03, -0.3}});
+  for (std::size_t c = 0; c < 3; ++c) {
+    u[5 + c] = 0.65 - 0.1 * static_cast<double>(c);
+    u[8 + c] = 0.1 - 0.03 * static_cast<double>(c);
+  }
+  ThreadPool pool(2);
+  const Uncertainty got = EstimateUncertainty(problem, layout, u, incidences, &pool);
+  const Matrix jacobian = layout.ReportJacobian(u.data());
+  const Textbook expected = EvaluateTextbook(recipe, layout, samples, incidences, u, jacobian);
+  const Matrix hc3 = jacobian * expected.hc3 * jacobian.transpose(),
+               cr2 = jacobian * expected.cr2 * jacobian.transpose();
+  ASSERT_TRUE(got.determined()) << got.degenerate[0];
+  for (Eigen::Index i = 0; i < kSize; ++i) {
+    for (Eigen::Index k = 0; k < kSize; ++k) {
+      EXPECT_NEAR(got.covariance(i, k), hc3(i, k), 1e-10 * std::sqrt(hc3(i, i) * hc3(k, k))) << i << ' ' << k;
+      EXPECT_NEAR(got.clustered(i, k), cr2(i, k), 1e-10 * std::sqrt(cr2(i, i) * cr2(k, k))) << i << ' ' << k;
+    }
+    const double freedom = got.freedom[static_cast<std::size_t>(i)];
+    if (loss == Loss::kNone) {
+      EXPECT_NEAR(freedom, expected.freedom(i), 1e-8 * freedom) << i;
+    } else {
+      EXPECT_GT(freedom, 0.5) << i;
+      EXPECT_LT(freedom, 5) << i;
+    }
+  }
+}
+
+std::string NameOfCase(const testing::TestParamInfo<EveryResidual::ParamType>& info) {
+  const char* const weights[] = {"Even", "Own", "SolidAngle", "Both"};
+  std::string name = std::string(NameOf(MetricChoices(), std::get<0>(info.param))) + "_" +
+                     weights[static_cast<int>(std::get<1>(info.param))] + "_" +
+                     NameOf(LossChoices(), std::get<2>(info.param));
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, EveryResidual,
+    testing::Combine(testing::Values(Metric::kLog, Metric::kCubeRoot, Metric::kRelative, Metric::kCosineL2,
+                                     Metric::kNgan, Metric::kLowLog, Metric::kAsinh),
+                     testing::Values(Weights::kNone, Weights::kOwn, Weights::kSolidAngle, Weights::kBoth),
+                     testing::Values(Loss::kNone, Loss::kHuber, Loss::kCauchy, Loss::kTukey)),
+    NameOfCase);
+
+// Every incidence cut at a run's end is put together again; any number of threads adds in the same order.
+TEST(Uncertainty, SameBitsOnOneAndEightThreads) {
+  GoniometerLayout layout = StandardLayout();
+  layout.detector_step = DegreesToRadians(6);
+  const Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20), layout, 0.1, 5);
+  ASSERT_GT(measurement.samples.size(), 4096U);  // several runs
+  for (const Loss loss : {Loss::kNone, Loss::kHuber}) {
+    Recipe recipe = DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "test");
+    recipe.loss = loss;
+    const Layout coordinates(recipe, measurement.channels.names);
+    const Problem problem(measurement.samples, recipe);
+    const std::vector<double> u = coordinates.FromShapes({{0.3, 0.12, 0.07, -0.03, -0.35}});
+    const Incidences incidences = GroupByIncidence(measurement);
+    ThreadPool one(1), eight(8);
+    const Uncertainty a = EstimateUncertainty(problem, coordinates, u, incidences, &one),
+                      b = EstimateUncertainty(problem, coordinates, u, incidences, &eight);
+    EXPECT_TRUE(a.covariance == b.covariance);
+    EXPECT_TRUE(a.clustered == b.clustered);
+    EXPECT_EQ(a.freedom, b.freedom);
+  }
+}
+
+// The same samples in another order are the same measurement: nothing is lost where an incidence goes over the end of a
+// run.
+TEST(Uncertainty, DoesNotDependOnTheOrderOfTheSamples) {
+  GoniometerLayout layout = StandardLayout();
+  layout.detector_step = DegreesToRadians(6);
+  Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20), layout, 0.1, 5);
+  Recipe recipe = DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "test");
+  const Layout coordinates(recipe, measurement.channels.names);
+  const std::vector<double> u = coordinates.FromShapes({{0.3, 0.12, 0.07, -0.03, -0.35}});
+  ThreadPool pool(2);
+  Uncertainty results[2];
+  for (Uncertainty& result : results) {
+    const Problem problem(measurement.samples, recipe);
+    result = EstimateUncertainty(problem, coordinates, u, GroupByIncidence(measurement), &pool);
+    std::vector<std::size_t> shuffled;
+    for (std::size_t i = 0; i < measurement.samples.size(); ++i)
+      shuffled.push_back(i * 7919 % measurement.samples.size());
+    measurement.samples = measurement.samples.Subset(shuffled);
+  }
+  EXPECT_LT((results[0].covariance - results[1].covariance).norm(), 1e-10 * results[0].covariance.norm());
+  EXPECT_LT((results[0].clustered - results[1].clustered).norm(), 1e-10 * results[0].clustered.norm());
+}
+
+}  // namespace
+}  // namespace lobefit
