@@ -8,8 +8,12 @@
 namespace lobefit {
 namespace {
 
-// In double: long double, which is Boost's choice, is ten times slower for nothing.
-using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+// In double: long double, which is Boost's choice, is ten times slower for nothing. NaN and infinity are values, not
+// exceptions.
+using boost::math::policies::ignore_error;
+using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>,
+                                             boost::math::policies::domain_error<ignore_error>,
+                                             boost::math::policies::overflow_error<ignore_error>>;
 using StudentT = boost::math::students_t_distribution<double, Policy>;
 using Normal = boost::math::normal_distribution<double, Policy>;
 

@@ -26,6 +26,11 @@ TEST(StudentT, OneDegreeOfFreedomIsCauchyAndTwoHaveAClosedForm) {
   }
 }
 
+TEST(StudentT, NotANumberIsNoException) {
+  EXPECT_TRUE(std::isnan(StudentTQuantile(0.975, std::nan(""))));
+  EXPECT_TRUE(std::isnan(StudentTCdf(1, std::nan(""))));
+}
+
 TEST(StudentT, FarTailsStayPositiveAndFall) {
   for (const double freedom : {3.0, 9.0, 40.0, 500.0}) {
     double before = 1;

@@ -18,7 +18,7 @@ Eigen::MatrixXd InverseRootTimes(const Eigen::MatrixXd& curvature, const Eigen::
   // The power series or the eigenvectors, whichever takes fewer operations.
   const double norm = curvature.norm();
   const double terms = norm < 1 ? 36 / -std::log(norm) : INFINITY;
-  if (terms < 10.0 * static_cast<double>(curvature.rows())) {
+  if (terms <= 10.0 * static_cast<double>(curvature.rows())) {
     Eigen::MatrixXd term = vectors, sum = vectors;
     for (int k = 1; term.squaredNorm() > 1e-32 * sum.squaredNorm(); ++k) {
       term = (curvature * term * ((k - 0.5) / k)).eval();
