@@ -1,14 +1,21 @@
 // lobefit VERB: the table of verbs, and what every error becomes.
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
 #include "verb.h"
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/parallel.h"
+#include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 #include "lobefit/base/version.h"
 
@@ -32,13 +39,10 @@ constexpr Verb kVerbs[] = {
     {"eval", "evaluate a quantity of the papers, with gradient, for rows of CSV", SetUpEval},
 };
 
+// As a shell takes it.
 std::string CommandLine(int argc, char** argv) {
   std::string command = "lobefit";
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const bool plain = argument.find_first_of(" \t\"'$\\*?") == std::string::npos && !argument.empty();
-    command += plain ? " " + argument : " '" + argument + "'";
-  }
+  for (int i = 1; i < argc; ++i) command += " " + ShellWord(argv[i]);
   return command;
 }
 
@@ -82,6 +86,22 @@ int Run(int argc, char** argv) {
   return run();
 }
 
+// A standard stream that is closed would be the number of the next file that is opened, and text for people would end
+// up in a result: such a number is taken by a descriptor on which the stream's use fails.
+void OccupyClosedStreams() {
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(number, F_GETFD) < 0) open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+// What a pipe was closed for, or a disk had no room for, is no success.
+int CloseOutput(int exit_code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+  std::fprintf(stderr, "lobefit: standard output cannot be written: %s; is the disk full, or the pipe closed?\n",
+               std::strerror(errno));
+  return exit_code == kExitDone || exit_code == kExitOther ? kExitInput : exit_code;
+}
+
 }  // namespace
 
 int CommonOptions::Threads() const { return threads > 0 ? threads : HardwareThreads(); }
@@ -89,15 +109,21 @@ int CommonOptions::Threads() const { return threads > 0 ? threads : HardwareThre
 }  // namespace lobefit
 
 int main(int argc, char** argv) {
+  lobefit::OccupyClosedStreams();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) lobefit::RemoveTemporariesOnSignal(signal);
+  std::string message;
+  int exit_code = lobefit::kExitOther;
   try {
-    return lobefit::Run(argc, argv);
+    exit_code = lobefit::Run(argc, argv);
   } catch (const lobefit::Error& error) {
-    std::fprintf(stderr, "lobefit: %s\n", error.what());
-    return error.exit_code();
+    message = error.what();
+    exit_code = error.exit_code();
   } catch (const std::bad_alloc&) {
-    std::fputs("lobefit: out of memory; choose a part of the file with --theta-i, or fewer --threads\n", stderr);
+    message = "out of memory; choose a part of the file with --theta-i or --channels, or fewer --threads";
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "lobefit: %s\n", error.what());
+    // Printing throws where standard output fails, which CloseOutput tells.
+    if (std::ferror(stdout) == 0) message = error.what();
   }
-  return lobefit::kExitOther;
+  if (!message.empty()) std::fprintf(stderr, "lobefit: %s\n", lobefit::Printable(message).c_str());
+  return lobefit::CloseOutput(exit_code);
 }

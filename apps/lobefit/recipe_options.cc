@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "number_option.h"
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
@@ -53,7 +54,9 @@ std::vector<std::string> RecipeNames() {
 
 Recipe LoadRecipe(const std::string& name_or_path) {
   std::error_code error;
-  if (std::filesystem::exists(name_or_path, error)) return ReadRecipe(name_or_path);
+  // A folder that has the name of a recipe does not stand in its way.
+  if (std::filesystem::exists(name_or_path, error) && !std::filesystem::is_directory(name_or_path, error))
+    return ReadRecipe(name_or_path);
   const std::filesystem::path folder = RecipeFolder();
   const std::filesystem::path named = folder / (name_or_path + ".toml");
   if (name_or_path.find('/') == std::string::npos && std::filesystem::exists(named, error)) return ReadRecipe(named);
@@ -67,7 +70,7 @@ void RecipeOverrides::AddTo(CLI::App* app, const std::string& group) {
   app->add_option("--weighting", weighting_, "overrides the recipe: " + Join(Names(WeightingChoices())))->group(group);
   app->add_option("--theta-max", theta_max_deg_,
                   "overrides the recipe: limit on both polar angles, degrees (default 80)")
-      ->check(CLI::Range(0.1, 90.0))
+      ->check(Within(0.1, 90))
       ->group(group);
   app->add_option(
          "--scale", scale_,

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 
 namespace lobefit {
@@ -25,22 +27,37 @@ std::vector<std::string> ParseReportFormats(const std::string& text) {
   return formats;
 }
 
-std::string WriteReports(const std::vector<std::string>& formats, const Material& material,
-                         const Measurement& measurement, const std::filesystem::path& picture,
-                         const ReportOptions& options) {
+namespace {
+
+ReportPaths PathsOf(const std::vector<std::string>& formats, const std::filesystem::path& picture) {
   ReportPaths paths;
-  std::string lines;
   for (const std::string& format : formats) {
     std::filesystem::path path = picture;
     path.replace_extension(format);
     (format == "png" ? paths.png : format == "html" ? paths.html : paths.exr) = path;
-    lines += fmt::format("{} {}\n",
-                         format == "png"    ? "Picture:"
-                         : format == "html" ? "Page:   "
-                                            : "Maps:   ",
-                         path.string());
   }
+  return paths;
+}
+
+}  // namespace
+
+void CheckReports(const std::vector<std::string>& formats, const std::filesystem::path& picture,
+                  const std::vector<std::filesystem::path>& inputs) {
+  const ReportPaths paths = PathsOf(formats, picture);
+  for (const std::filesystem::path& path : {paths.png, paths.html, paths.exr}) {
+    if (!path.empty()) CheckOutput(path, inputs);
+  }
+}
+
+std::string WriteReports(const std::vector<std::string>& formats, const Material& material,
+                         const Measurement& measurement, const std::filesystem::path& picture,
+                         const ReportOptions& options) {
+  const ReportPaths paths = PathsOf(formats, picture);
   WriteReport(material, measurement, paths, options);
+  std::string lines;
+  if (!paths.png.empty()) lines += fmt::format("Picture: {}\n", PrintableName(paths.png));
+  if (!paths.html.empty()) lines += fmt::format("Page:    {}\n", PrintableName(paths.html));
+  if (!paths.exr.empty()) lines += fmt::format("Maps:    {}\n", PrintableName(paths.exr));
   return lines;
 }
 

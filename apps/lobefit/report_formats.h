@@ -15,6 +15,10 @@ std::vector<std::string> ReportFormats();
 // "png,html" as a list. Throws UsageError that lists the formats.
 std::vector<std::string> ParseReportFormats(const std::string& text);
 
+// CheckOutput for each file that WriteReports would write.
+void CheckReports(const std::vector<std::string>& formats, const std::filesystem::path& picture,
+                  const std::vector<std::filesystem::path>& inputs);
+
 // Writes `picture` with the extension of each format. Returns lines for people that name the files.
 std::string WriteReports(const std::vector<std::string>& formats, const Material& material,
                          const Measurement& measurement, const std::filesystem::path& picture,

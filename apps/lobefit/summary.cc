@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/measurement/set_aside.h"
@@ -78,8 +79,8 @@ std::string WithError(double value, double standard_error) {
 }
 
 std::string Summary(const Material& material) {
-  std::string text =
-      fmt::format("{} ({}): recipe {}", material.source.file, material.source.format, material.recipe_name);
+  std::string text = fmt::format("{} ({}): recipe {}", PrintableName(material.source.file), material.source.format,
+                                 material.recipe_name);
   if (!material.recipe_reason.empty()) text += fmt::format(", because {}", material.recipe_reason);
   text += '\n';
   text += fmt::format("{} of {} samples used, {} channel{}", material.samples_used, material.samples_read,

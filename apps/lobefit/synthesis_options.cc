@@ -1,5 +1,6 @@
 #include "synthesis_options.h"
 
+#include "number_option.h"
 #include "recipe_options.h"
 #include <fmt/format.h>
 
@@ -10,13 +11,17 @@
 namespace lobefit {
 namespace {
 
-std::vector<double> AngleList(const std::string& text, const char* option) {
+std::vector<double> AngleList(const std::string& text, const char* option, double low, double below) {
   std::vector<double> angles;
   for (const std::string_view field : Split(text, ',')) {
     const std::optional<double> degrees = ParseDouble(field);
     if (!degrees)
       throw UsageError(fmt::format("{} '{}': '{}' is not a number; write degrees with commas between", option, text,
                                    Excerpt(field)));
+    if (!(*degrees >= low && *degrees < below)) {
+      throw UsageError(
+          fmt::format("{} '{}': {} is not in [{}, {}) degrees", option, Excerpt(text), Excerpt(field), low, below));
+    }
     angles.push_back(DegreesToRadians(*degrees));
   }
   return angles;
@@ -35,10 +40,10 @@ void SynthesisOptions::AddTo(CLI::App* app) {
   app->add_option("--phi-i", phi_i_, "azimuths of the light, degrees, with commas between")->group(where);
   app->add_option("--detector-step", step_,
                   "step of the detector grid, degrees (half of it about the mirror direction)")
-      ->check(CLI::Range(0.2, 45.0))
+      ->check(Within(0.2, 45))
       ->group(where);
   app->add_option("--theta-max", theta_max_, "largest polar angle of the detector, degrees")
-      ->check(CLI::Range(1.0, 89.9))
+      ->check(Within(1, 89.9))
       ->group(where);
   app->add_flag("--in-plane", in_plane_, "the same as --layout in-plane")->group(where);
   app->add_option("--samples", samples_, "samples a light direction of the layouts by visible normals (default 256)")
@@ -69,8 +74,8 @@ LayoutRequest SynthesisOptions::Layout() const {
   LayoutRequest request;
   request.name = in_plane_ ? "in-plane" : layout_;
   request.samples = samples_;
-  request.goniometer.polar_angles = AngleList(theta_i_, "--theta-i");
-  request.goniometer.azimuths = AngleList(phi_i_, "--phi-i");
+  request.goniometer.polar_angles = AngleList(theta_i_, "--theta-i", 0, 90);
+  request.goniometer.azimuths = AngleList(phi_i_, "--phi-i", -360, 360.001);
   request.goniometer.detector_step = DegreesToRadians(step_);
   request.goniometer.theta_max = DegreesToRadians(theta_max_);
   return request;

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "output.h"
 #include "synthesis_options.h"
 #include "verb.h"
 #include <fmt/format.h>
@@ -21,6 +22,8 @@ struct SynthVerb {
 };
 
 int RunSynth(const SynthVerb& verb, const CommonOptions& common) {
+  CheckOutput(verb.out, {verb.source, verb.synthesis.Layout().name});
+  const WriteFormat& format = FindWriteFormat(std::nullopt, verb.out == "-" ? "-.csv" : verb.out);
   const Truth truth = verb.synthesis.LoadTruth(verb.source);
   const Noise noise = verb.synthesis.ChosenNoise();
   const MeasurementLayout layout = MakeLayout(verb.synthesis.Layout(), truth);
@@ -31,7 +34,6 @@ int RunSynth(const SynthVerb& verb, const CommonOptions& common) {
   measurement.isotropic = layout.isotropic;
   measurement.source = "synthetic";
   const TruthRecord record = {truth, noise, verb.synthesis.seed(), common.command};
-  const WriteFormat& format = FindWriteFormat(std::nullopt, verb.out);
   if (std::string(format.name) == "csv") {
     WriteCsv(measurement, TruthComments(record), verb.out, verb.digits);
   } else {
@@ -41,7 +43,9 @@ int RunSynth(const SynthVerb& verb, const CommonOptions& common) {
     format.write(source, {}, verb.out);
     WriteTruthBeside(record, verb.out);
   }
-  fmt::print("{}: {} samples, {} channels\n", verb.out, measurement.samples.size(), measurement.channels.size());
+  Print(fmt::format("{}: {} samples, {} channels\n", PrintableName(verb.out), measurement.samples.size(),
+                    measurement.channels.size()),
+        SummaryStream(verb.out));
   return kExitDone;
 }
 
@@ -53,7 +57,8 @@ std::function<int()> SetUpSynth(CLI::App* app, CommonOptions* common) {
                   "a *.material.json, or a recipe (.toml or name) whose parameters have starts or fixed values")
       ->required();
   app->add_option("--out", verb->out,
-                  "the file to write; its ending names the format (.csv, .alta, .txt, .binary, .bsdf, ...)")
+                  "the file to write; its ending names the format (.csv, .alta, .txt, .binary, .bsdf, ...); - writes "
+                  "CSV to standard output")
       ->required();
   app->add_option("--digits", verb->digits, "significant digits of the numbers (default 17: nothing is lost)")
       ->check(CLI::Range(4, 17));

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "output.h"
 #include "recipe_options.h"
 #include "synthesis_options.h"
 #include "verb.h"
@@ -41,7 +42,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 void OnInterrupt(int signal) {
   interrupted = true;
-  std::signal(signal, SIG_DFL);
+  RemoveTemporariesOnSignal(signal);
 }
 
 ExperimentRequest RequestOf(const ValidateVerb& verb) {
@@ -59,6 +60,16 @@ ExperimentRequest RequestOf(const ValidateVerb& verb) {
 std::vector<Trial> RunWithProgress(const Experiment& experiment, std::size_t count, int threads, Progress* progress) {
   return RunTrials(
       experiment, count, threads, [&] { progress->Advance(); }, interrupted);
+}
+
+// JSON as it is, text as a terminal may show it.
+template <class Json, class Text>
+void PrintResult(bool json, const Json& to_json, const Text& to_text) {
+  if (json) {
+    fmt::print("{}", to_json());
+  } else {
+    Print(to_text());
+  }
 }
 
 int RunSweep(const ValidateVerb& verb, const CommonOptions& common) {
@@ -81,7 +92,7 @@ int RunSweep(const ValidateVerb& verb, const CommonOptions& common) {
           ToJsonLine(sweep.name, sweep.points[i].value, experiments[i], sweep.points[i].calibration, common.command);
     fmt::print("{}", text);
   } else {
-    fmt::print("{}", ToText(sweep));
+    Print(ToText(sweep));
   }
   if (interrupted) std::fprintf(stderr, "lobefit: interrupted; points without trials show none\n");
   return kExitDone;
@@ -106,7 +117,9 @@ int RunSelfCheck(const CommonOptions& common) {
 
 int Report(const Experiment& experiment, const std::vector<Trial>& trials, const CommonOptions& common) {
   const Calibration calibration = Calibrate(experiment, trials);
-  fmt::print("{}", common.json ? ToJson(experiment, calibration, common.command) : ToText(calibration));
+  PrintResult(
+      common.json, [&] { return ToJson(experiment, calibration, common.command); },
+      [&] { return ToText(calibration); });
   if (interrupted) {
     std::fprintf(stderr, "lobefit: interrupted after %zu of %zu trials\n", calibration.done, calibration.planned);
   }
@@ -124,7 +137,9 @@ int RunTrialsOf(const ValidateVerb& verb, const CommonOptions& common) {
   if (experiment.noise == Noise{} && IsSameModel(experiment.recipe.model, experiment.truth.model)) {
     const Recovery recovery = JudgeRecovery(experiment, trials);
     if (!verb.picture.empty()) DrawRecovery(experiment, trials, recovery, verb.picture);
-    fmt::print("{}", common.json ? ToJson(experiment, recovery, common.command) : ToText(recovery, experiment, trials));
+    PrintResult(
+        common.json, [&] { return ToJson(experiment, recovery, common.command); },
+        [&] { return ToText(recovery, experiment, trials); });
     return recovery.passed() ? kExitDone : kExitFit;
   }
   if (!verb.picture.empty()) DrawCalibration(experiment, trials, Calibrate(experiment, trials), verb.picture);
@@ -154,10 +169,11 @@ int RunFile(const ValidateVerb& verb, const CommonOptions& common) {
   const Trial trial = CompareWithTruth(experiment, record->truth, std::move(measurement));
   if (!trial.error.empty()) throw InputError(trial.error);
   if (common.json) return Report(experiment, {trial}, common);
-  fmt::print("{}: made with noise {}, seed {}\n", verb.source, ToText(record->noise), record->seed);
-  fmt::print("{}", TrialToText(experiment, trial));
+  Print(fmt::format("{}: made with noise {}, seed {}\n", PrintableName(verb.source), ToText(record->noise),
+                    record->seed));
+  Print(TrialToText(experiment, trial));
   const Calibration calibration = Calibrate(experiment, {trial});
-  for (const std::string& failure : calibration.failures) fmt::print("FAILED: {}\n", failure);
+  for (const std::string& failure : calibration.failures) Print(fmt::format("FAILED: {}\n", failure));
   return calibration.passed() ? kExitDone : kExitFit;
 }
 
@@ -190,6 +206,7 @@ std::function<int()> SetUpValidate(CLI::App* app, CommonOptions* common) {
     if (verb->self_check) return RunSelfCheck(*common);
     if (verb->source.empty())
       throw UsageError("validate needs a SOURCE or --self-check; see `lobefit validate --help`");
+    if (!verb->picture.empty()) CheckPicture(verb->picture, {verb->source});
     if (IsMeasurementFile(verb->source)) return RunFile(*verb, *common);
     return verb->sweep.empty() ? RunTrialsOf(*verb, *common) : RunSweep(*verb, *common);
   };

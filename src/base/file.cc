@@ -1,113 +1,122 @@
 #include "lobefit/base/file.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <memory>
+#include <new>
 #include <utility>
 
 #include <fcntl.h>
 #include <openssl/evp.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/memory.h"
+#include "lobefit/base/printable.h"
 
 namespace lobefit {
 namespace {
 
 std::string SystemReason() { return std::strerror(errno); }
 
+// Closes what it opened; standard input is left open.
+class Descriptor {
+ public:
+  explicit Descriptor(const std::filesystem::path& path)
+      : standard_(path == "-"), number_(standard_ ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~Descriptor() {
+    if (number_ >= 0 && !standard_) close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+
+ private:
+  bool standard_;
+  int number_;
+};
+
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) {
-    throw InputError(path.string() + ": cannot be opened: " + SystemReason() + "; check the name and the permissions");
+void FileBytes::Free::operator()(char* memory) const { std::free(memory); }
+
+FileBytes::FileBytes(const std::filesystem::path& path) : path_(path) {
+  const Descriptor descriptor(path);
+  if (descriptor.number() < 0) {
+    throw InputError(PrintableName(path) + ": cannot be opened: " + SystemReason() +
+                     "; check the name and the permissions");
   }
+  Read(descriptor.number());
+}
+
+std::string FileBytes::name() const { return path_ == "-" ? "stdin" : path_.filename().string(); }
+
+void FileBytes::Reserve(std::size_t bytes) {
+  // Aligned, so that large pages fit; whole ones, since aligned_alloc asks for that.
+  constexpr std::size_t kLargePage = std::size_t{1} << 21, kSmall = std::size_t{1} << 16;
+  const std::size_t unit = bytes > kLargePage ? kLargePage : kSmall;
+  const std::size_t capacity = std::max(unit, (bytes + unit - 1) / unit * unit);
+  std::unique_ptr<char[], Free> memory(static_cast<char*>(std::aligned_alloc(unit, capacity)));
+  if (!memory) throw std::bad_alloc();
+  AdviseLargePages(memory.get(), capacity);
+  if (size_ > 0) std::memcpy(memory.get(), memory_.get(), size_);
+  memory_ = std::move(memory);
+  capacity_ = capacity;
+}
+
+void FileBytes::Read(int descriptor) {
   struct stat status = {};
-  const bool known = fstat(descriptor, &status) == 0;
-  if (!known || !S_ISREG(status.st_mode)) {
-    const bool folder = known && S_ISDIR(status.st_mode);
-    close(descriptor);
-    throw InputError(path.string() + ": is " + (folder ? "a folder" : "not a regular file") +
-                     "; name a measurement file");
+  if (fstat(descriptor, &status) != 0) throw InputError(PrintableName(path_) + ": cannot be read: " + SystemReason());
+  const bool regular = S_ISREG(status.st_mode);
+  if (!regular && !S_ISFIFO(status.st_mode) && !S_ISCHR(status.st_mode)) {
+    throw InputError(PrintableName(path_) + ": is " +
+                     (S_ISDIR(status.st_mode) ? "a folder" : "a block device or socket") +
+                     "; name a file, a pipe or - for standard input");
   }
-  size_ = static_cast<std::size_t>(status.st_size);
-  if (size_ > 0) {
-    data_ = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
-    if (data_ == MAP_FAILED) {
-      data_ = nullptr;
-      const std::string reason = SystemReason();
-      close(descriptor);
-      throw InputError(path.string() + ": cannot be mapped into memory: " + reason);
-    }
-    madvise(data_, size_, MADV_SEQUENTIAL);
+  const std::size_t stated = regular ? static_cast<std::size_t>(status.st_size) : 0;
+  const std::size_t most = regular ? kMost : kMostStreamed;
+  const auto refuse_beyond = [&](std::size_t bytes) {
+    if (bytes <= most) return;
+    throw InputError(PrintableName(path_) + ": holds more than " + std::to_string(most >> 20) + " MB, the limit of a " +
+                     (regular ? "file; give a part of it" : "pipe; write it to a file, or give a part of it"));
+  };
+  refuse_beyond(stated);
+  Reserve(stated + 1);
+  while (true) {
+    const ssize_t count = read(descriptor, memory_.get() + size_, capacity_ - size_);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw InputError(PrintableName(path_) + ": reading failed: " + SystemReason());
+    if (count == 0) break;
+    size_ += static_cast<std::size_t>(count);
+    refuse_beyond(size_);
+    if (size_ == capacity_) Reserve(2 * capacity_);
   }
-  close(descriptor);
+  // Standard input may stand in the middle of a file.
+  if (path_ != "-" && size_ < stated) {
+    throw InputError(PrintableName(path_) + ": became shorter while it was read: " + std::to_string(size_) + " of " +
+                     std::to_string(stated) + " bytes; read it again when it is complete");
+  }
 }
 
-MappedFile::~MappedFile() {
-  if (data_ != nullptr) munmap(data_, size_);
-}
-
-MappedFile::MappedFile(MappedFile&& other) noexcept
-    : path_(std::move(other.path_)), data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
-
-std::string Sha256Hex(std::string_view bytes) {
+std::string Sha256(std::string_view bytes) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest = {};
   unsigned int length = 0;
   EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr);
+  return {digest.begin(), digest.begin() + length};
+}
+
+std::string Sha256Hex(std::string_view bytes) {
   static constexpr char kDigits[] = "0123456789abcdef";
   std::string hex;
-  for (unsigned int i = 0; i < length; ++i) {
-    hex += kDigits[digest[i] >> 4];
-    hex += kDigits[digest[i] & 15];
+  for (const char c : Sha256(bytes)) {
+    const auto byte = static_cast<unsigned char>(c);
+    hex += kDigits[byte >> 4];
+    hex += kDigits[byte & 15];
   }
   return hex;
-}
-
-void MakeFolder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw OutputError(folder.string() + ": cannot be made: " + error.message() + "; choose another folder with --out");
-}
-
-void WriteFileThroughTemporary(const std::filesystem::path& path,
-                               const std::function<void(const std::filesystem::path&)>& write) {
-  const std::filesystem::path temporary = path.string() + ".part" + std::to_string(getpid());
-  try {
-    write(temporary);
-    std::filesystem::rename(temporary, path);
-  } catch (const std::filesystem::filesystem_error& error) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw OutputError(path.string() + ": cannot be written: " + error.code().message() +
-                      "; choose another place with --out");
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
-}
-
-void WriteFileAtomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
-  WriteFileThroughTemporary(path, [&](const std::filesystem::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    if (!out)
-      throw OutputError(path.string() + ": cannot be written: " + SystemReason() + "; choose another place with --out");
-    write(out);
-    out.flush();
-    if (!out) throw OutputError(path.string() + ": writing failed: " + SystemReason() + "; is the disk full?");
-  });
-}
-
-void WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes) {
-  WriteFileAtomically(path,
-                      [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
 }
 
 }  // namespace lobefit

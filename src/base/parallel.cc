@@ -57,7 +57,11 @@ int HardwareThreads() {
 }
 
 ThreadPool::ThreadPool(int threads) : state_(new State) {
-  for (int i = 1; i < threads; ++i) state_->workers.emplace_back([this] { state_->Loop(); });
+  try {
+    for (int i = 1; i < threads; ++i) state_->workers.emplace_back([this] { state_->Loop(); });
+  } catch (const std::exception&) {
+    // A limit on threads: those that are there do the work.
+  }
 }
 
 ThreadPool::~ThreadPool() {

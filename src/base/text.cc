@@ -33,12 +33,24 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-// from_chars reports both overflow and underflow as out of range: an exponent decides which it was.
-double OutOfRangeValue(std::string_view digits) {
-  const bool negative = digits.front() == '-';
-  const std::size_t e = digits.find_first_of("eE");
-  const bool small = e != std::string_view::npos && e + 1 < digits.size() && digits[e + 1] == '-';
-  const double magnitude = small ? 0.0 : std::numeric_limits<double>::infinity();
+// from_chars reports both overflow and underflow as out of range: the place of the first digit that is not 0 decides
+// which it was. `number` is "-0.0012e-400" without blanks.
+double OutOfRangeValue(std::string_view number) {
+  const bool negative = number.front() == '-';
+  if (negative) number.remove_prefix(1);
+  const std::size_t e = std::min(number.find_first_of("eE"), number.size());
+  const std::string_view digits = number.substr(0, e);
+  const std::size_t point = std::min(digits.find('.'), digits.size()), first = digits.find_first_not_of("0.");
+  // Power of ten just above the number: digits before the point, or minus the zeros behind it.
+  auto power = static_cast<double>(point) - static_cast<double>(std::min(first, digits.size()));
+  if (first > point) power += 1;
+  double exponent = 0;
+  const bool below = e + 1 < number.size() && number[e + 1] == '-';
+  for (const char c : number.substr(std::min(e, number.size()))) {
+    if (IsDigit(c)) exponent = 10 * exponent + (c - '0');
+  }
+  power += below ? -exponent : exponent;
+  const double magnitude = power > 0 ? std::numeric_limits<double>::infinity() : 0.0;
   return negative ? -magnitude : magnitude;
 }
 

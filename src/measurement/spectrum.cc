@@ -150,9 +150,7 @@ bool Named(const Channels& channels, const char* a, const char* b, const char* c
 void RequireVisible(const std::string& choice, const Channels& channels) {
   const auto& nm = channels.wavelengths_nm;
   if (nm.empty()) Refuse(choice, channels, "needs R G B, X Y Z or wavelengths");
-  if (*std::min_element(nm.begin(), nm.end()) > 430 || *std::max_element(nm.begin(), nm.end()) < 650) {
-    Refuse(choice, channels, "the wavelengths must cover 430 to 650 nm");
-  }
+  if (!CoversVisible(nm)) Refuse(choice, channels, "the wavelengths must cover 430 to 650 nm");
 }
 
 std::vector<std::vector<double>> Rows(const double (&matrix)[3][3]) {
@@ -284,6 +282,11 @@ ChannelMap FromList(const std::string& choice, const Channels& channels) {
 }
 
 }  // namespace
+
+bool CoversVisible(const std::vector<double>& wavelengths_nm) {
+  const auto [low, high] = std::minmax_element(wavelengths_nm.begin(), wavelengths_nm.end());
+  return !wavelengths_nm.empty() && *low <= 430 && *high >= 650;
+}
 
 Triple SrgbFromXyz(const Triple& xyz) { return Multiplied(kXyzToRgb, xyz); }
 Triple XyzFromSrgb(const Triple& rgb) { return Multiplied(kRgbToXyz, rgb); }

@@ -31,6 +31,9 @@ struct ChannelMap {
 // 650 nm.
 ChannelMap MakeChannelMap(const std::string& choice, const Channels& channels);
 
+// Whether the wavelengths cover 430 to 650 nm, as colours need it.
+bool CoversVisible(const std::vector<double>& wavelengths_nm);
+
 // Replaces the channels of a measurement; adds "channels" to its conventions.
 void Apply(const ChannelMap& map, Measurement* measurement);
 // The function with its channels replaced.

@@ -9,9 +9,8 @@
 
 namespace lobefit {
 
-// Linear sRGB primaries from any set of channels: R, G, B as they are; X, Y, Z by the matrix of IEC 61966-2-1;
-// wavelengths by the CIE 1931 observer in the analytic form of [Wyman, Sloan, Shirley 2013], under light of equal
-// energy, scaled so that a white reflectance is white; else grey, the mean of the channels.
+// Linear sRGB primaries from any set of channels: as MakeChannelMap("rgb") takes R, G, B, X, Y, Z and wavelengths that
+// cover the visible; else grey, the mean of the channels.
 class ChannelColor {
  public:
   explicit ChannelColor(const Channels& channels);

@@ -8,14 +8,16 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStdIO.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/base/printable.h"
 
 namespace lobefit {
 namespace {
 
-void Write(const std::vector<NamedField>& fields, const std::string& path) {
+std::string Encode(const std::vector<NamedField>& fields) {
   // Parts of a file share one display window.
   int width = 0, height = 0;
   for (const NamedField& field : fields) {
@@ -32,23 +34,27 @@ void Write(const std::vector<NamedField>& fields, const std::string& path) {
       header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
     headers.push_back(header);
   }
-  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()), false, 0);
-  for (std::size_t k = 0; k < fields.size(); ++k) {
-    const FieldImage& image = *fields[k].image;
-    Imf::FrameBuffer buffer;
-    const auto add = [&](const char* channel, const std::vector<float>& values) {
-      // The library takes a pointer that is not const and only reads.
-      auto* base = static_cast<char*>(static_cast<void*>(const_cast<float*>(values.data())));
-      buffer.insert(channel,
-                    Imf::Slice(Imf::FLOAT, base, sizeof(float), sizeof(float) * static_cast<std::size_t>(image.width)));
-    };
-    add("measured", image.measured);
-    add("fitted", image.fitted);
-    add("log_ratio", image.log_ratio);
-    Imf::OutputPart part(file, static_cast<int>(k));
-    part.setFrameBuffer(buffer);
-    part.writePixels(image.height);
+  Imf::StdOSStream bytes;
+  {
+    Imf::MultiPartOutputFile file(bytes, headers.data(), static_cast<int>(headers.size()), false, 0);
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      const FieldImage& image = *fields[k].image;
+      Imf::FrameBuffer buffer;
+      const auto add = [&](const char* channel, const std::vector<float>& values) {
+        // The library takes a pointer that is not const and only reads.
+        auto* base = static_cast<char*>(static_cast<void*>(const_cast<float*>(values.data())));
+        buffer.insert(channel, Imf::Slice(Imf::FLOAT, base, sizeof(float),
+                                          sizeof(float) * static_cast<std::size_t>(image.width)));
+      };
+      add("measured", image.measured);
+      add("fitted", image.fitted);
+      add("log_ratio", image.log_ratio);
+      Imf::OutputPart part(file, static_cast<int>(k));
+      part.setFrameBuffer(buffer);
+      part.writePixels(image.height);
+    }
   }
+  return bytes.str();
 }
 
 }  // namespace
@@ -57,15 +63,13 @@ void WriteExr(const std::vector<NamedField>& fields, const std::filesystem::path
   if (fields.empty())
     throw OutputError(path.string() +
                       ": the measurement fills no map, so there is nothing to write as EXR; take png or html");
-  WriteFileThroughTemporary(path, [&](const std::filesystem::path& temporary) {
-    try {
-      Write(fields, temporary.string());
-    } catch (const Error&) {
-      throw;
-    } catch (const std::exception& error) {
-      throw OutputError(path.string() + ": cannot write EXR: " + error.what());
-    }
-  });
+  std::string bytes;
+  try {
+    bytes = Encode(fields);
+  } catch (const std::exception& error) {
+    throw OutputError(PrintableName(path) + ": cannot be written as EXR: " + Printable(error.what()));
+  }
+  WriteFileAtomically(path, bytes);
 }
 
 }  // namespace lobefit

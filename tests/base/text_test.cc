@@ -65,6 +65,15 @@ TEST(ParseDouble, NonFiniteAndOutOfRange) {
   EXPECT_EQ(*ParseDouble("1e999"), HUGE_VAL);
   EXPECT_EQ(*ParseDouble("-1e999"), -HUGE_VAL);
   EXPECT_EQ(*ParseDouble("1e-999"), 0.0);
+  // The exponent alone does not tell.
+  const std::string zeros(400, '0');
+  EXPECT_EQ(*ParseDouble("0." + zeros + "1"), 0.0);
+  EXPECT_EQ(*ParseDouble("." + zeros + "1"), 0.0);
+  EXPECT_EQ(*ParseDouble("1" + zeros + "e-5"), HUGE_VAL);
+  EXPECT_EQ(*ParseDouble("-1" + zeros + ".5"), -HUGE_VAL);
+  EXPECT_EQ(*ParseDouble("0." + zeros + "1e+5"), 0.0);
+  EXPECT_EQ(*ParseDouble("1e99999999999999999999"), HUGE_VAL);
+  EXPECT_NEAR(*ParseDouble("1" + zeros + "e-400"), 1.0, 1e-15);
 }
 
 TEST(ParseInteger, RefusesFractionsAndOverflow) {

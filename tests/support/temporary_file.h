@@ -3,13 +3,12 @@
 
 #include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
-
-#include "lobefit/base/file.h"
 
 namespace lobefit {
 
@@ -21,7 +20,9 @@ class TemporaryFile {
     path_ = std::filesystem::path(testing::TempDir()) /
             ("lobefit_" + std::to_string(getpid()) + "_" + std::to_string(counter++));
   }
-  explicit TemporaryFile(std::string_view bytes) : TemporaryFile() { WriteFileAtomically(path_, bytes); }
+  explicit TemporaryFile(std::string_view bytes) : TemporaryFile() {
+    std::ofstream(path_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
   ~TemporaryFile() {
     std::error_code ignored;
     std::filesystem::remove(path_, ignored);

@@ -8,11 +8,14 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/parallel.h"
+#include "lobefit/base/printable.h"
+#include "lobefit/base/threads.h"
 #include "lobefit/io/text/options.h"
 
 namespace lobefit {
@@ -41,9 +44,9 @@ void AddAttributes(const ExrMap& map, const std::string& source, Imf::Header* he
 }  // namespace
 
 void WriteExr(const BrdfFunction& brdf, const Channels& channels, const ExrMap& map, std::size_t width,
-              std::size_t height, const std::string& source, const std::filesystem::path& path) {
+              std::size_t height, const std::string& source, const std::filesystem::path& path, int threads) {
   std::vector<std::vector<float>> planes(channels.size(), std::vector<float>(width * height));
-  ParallelFor(height, HardwareThreads(), [&](std::size_t row) {
+  ParallelFor(height, ThreadsFor(threads), [&](std::size_t row) {
     std::vector<double> values(channels.size());
     for (std::size_t column = 0; column < width; ++column) {
       Vec3 wi = {}, wo = {};
@@ -65,15 +68,15 @@ void WriteExr(const BrdfFunction& brdf, const Channels& channels, const ExrMap& 
     buffer.insert(channels.names[c], Imf::Slice::Make(Imf::FLOAT, planes[c].data(), header.dataWindow(), sizeof(float),
                                                       sizeof(float) * width));
   }
-  WriteFileThroughTemporary(path, [&](const std::filesystem::path& temporary) {
-    try {
-      Imf::OutputFile exr(temporary.c_str(), header, 0);
-      exr.setFrameBuffer(buffer);
-      exr.writePixels(static_cast<int>(height));
-    } catch (const std::exception& error) {
-      throw OutputError(path.string() + ": cannot be written: " + error.what() + "; choose another place with --out");
-    }
-  });
+  Imf::StdOSStream bytes;
+  try {
+    Imf::OutputFile exr(bytes, header, 0);
+    exr.setFrameBuffer(buffer);
+    exr.writePixels(static_cast<int>(height));
+  } catch (const std::exception& error) {
+    throw OutputError(PrintableName(path) + ": cannot be written as EXR: " + Printable(error.what()));
+  }
+  WriteFileAtomically(path, bytes.str());
 }
 
 }  // namespace lobefit

@@ -13,6 +13,6 @@ namespace lobefit {
 // f_r at the pixels' centres as 32-bit floats, NaN where a pixel is no pair of directions. Channels R G B, Y, or named
 // as wavelengths. `source` goes to the attribute brdf.source. Throws OutputError.
 void WriteExr(const BrdfFunction& brdf, const Channels& channels, const ExrMap& map, std::size_t width,
-              std::size_t height, const std::string& source, const std::filesystem::path& path);
+              std::size_t height, const std::string& source, const std::filesystem::path& path, int threads = 0);
 
 }  // namespace lobefit

@@ -10,16 +10,14 @@ namespace lobefit {
 namespace {
 
 constexpr int kMostDepth = 32;
-// Each element takes some 100 bytes of memory, many times the 4 bytes of "<a/>"; real files have a few hundred.
-constexpr std::ptrdiff_t kMostElements = 1000000;
 
 // Text is left as it stands in the file (no entities, no line end conversion), so that a place in it is a place there.
 constexpr unsigned int kParse = pugi::parse_minimal | pugi::parse_cdata;
 
 }  // namespace
 
-XmlFile::XmlFile(const InputFile& file) : file_(file) {
-  CheckSize();
+XmlFile::XmlFile(const InputFile& file, std::size_t most_elements) : file_(file) {
+  CheckSize(most_elements);
   const pugi::xml_parse_result result =
       document_.load_buffer(file.bytes.data(), file.bytes.size(), kParse, pugi::encoding_utf8);
   if (!result) {
@@ -31,15 +29,26 @@ XmlFile::XmlFile(const InputFile& file) : file_(file) {
   CheckDepth();
 }
 
-void XmlFile::CheckSize() const {
+void XmlFile::CheckSize(std::size_t most_elements) const {
   if (const std::size_t zero = file_.bytes.find('\0'); zero != std::string_view::npos) {
     FailAtByte(file_, zero, "is 0, which XML in UTF-8 does not allow; save the file as UTF-8");
   }
-  if (std::count(file_.bytes.begin(), file_.bytes.end(), '<') > kMostElements) {
+  // Each element takes some 100 bytes of memory, many times the 4 bytes of "<a/>", and so does each attribute of 5.
+  const auto count = [&](char c) {
+    return static_cast<std::size_t>(std::count(file_.bytes.begin(), file_.bytes.end(), c));
+  };
+  if (count('<') > most_elements || count('=') > 2 * most_elements) {
     FailAtLine(file_, 1,
-               "the file has more than " + std::to_string(kMostElements) +
-                   " elements; a BSDF file has a few hundred, its numbers are text");
+               "the file has more than " + std::to_string(most_elements) + " elements or " +
+                   std::to_string(2 * most_elements) +
+                   " attributes; real files have a few hundred, their numbers are text");
   }
+}
+
+std::string XmlFile::Unescaped(const char* value) {
+  pugi::xml_document text;
+  text.load_string((std::string("<a b=\"") + value + "\"/>").c_str(), pugi::parse_minimal | pugi::parse_escapes);
+  return text.first_child().attribute("b").value();
 }
 
 void XmlFile::CheckDepth() const {

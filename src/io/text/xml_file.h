@@ -14,8 +14,12 @@ namespace lobefit {
 
 class XmlFile {
  public:
-  // Throws InputError where the file is not well-formed, is deeper than 32 elements or has more than 10^6 of them.
-  explicit XmlFile(const InputFile& file);
+  // Throws InputError where the file is not well-formed, is deeper than 32 elements or has more than `most_elements`.
+  explicit XmlFile(const InputFile& file, std::size_t most_elements = 1000000);
+
+  // The value of an attribute with its entities (&amp; &lt; &gt; &quot; &apos; and numbers) replaced; elsewhere text
+  // stands as in the file.
+  static std::string Unescaped(const char* value);
 
   const InputFile& file() const { return file_; }
   pugi::xml_node root() const { return document_.document_element(); }
@@ -34,7 +38,7 @@ class XmlFile {
   [[noreturn]] void Fail(pugi::xml_node element, const std::string& message) const;
 
  private:
-  void CheckSize() const;
+  void CheckSize(std::size_t most_elements) const;
   void CheckDepth() const;
 
   const InputFile& file_;

@@ -2,38 +2,50 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 #include "lobefit/base/base64.h"
-#include "lobefit/base/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/color.h"
 #include "lobefit/plot/style.h"
 #include "lobefit/plot/table.h"
 #include "lobefit/report/figures/isotropic_lookup.h"
 #include "lobefit/report/figures/sphere.h"
-#include "lobefit/report/web/text.h"
 
 namespace lobefit {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr std::array<std::size_t, 3> kTable = {90, 45, 8};  // sqrt(theta_h), theta_d, phi_d
 constexpr std::size_t kMostSliceValues = 40000;
 constexpr std::size_t kMostPointsOfASlice = 240;
-constexpr int kReferenceSize = 40;
+
+// The number of `digits` significant digits that is nearest, so that its text is short; null where it is not finite.
+Json Rounded(double value, int digits) {
+  if (!std::isfinite(value)) return nullptr;
+  std::array<char, 40> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits);
+  std::from_chars(text.data(), end.ptr, value);
+  return value;
+}
+
+Json Hundredths(double radians) { return Rounded(std::round(RadiansToDegrees(radians) * 100) / 100, 6); }
 
 template <class Items, class F>
-std::string JsonList(const Items& items, const F& text) {
-  std::vector<std::string> list;
-  list.reserve(items.size());
-  for (const auto& item : items) list.push_back(text(item));
-  return Join({"[", Join(list, ","), "]"}, "");
+Json List(const Items& items, const F& json) {
+  Json list = Json::array();
+  for (const auto& item : items) list.push_back(json(item));
+  return list;
 }
 
 // The measured values for the sphere: 16-bit logarithms of linear red, green, blue; 0: not known.
-std::string TableJson(const ReportData& data, const ChannelColor& to_color) {
+Json TableJson(const ReportData& data, const ChannelColor& to_color) {
   const IsotropicLookup lookup(data.measurement);
   const std::size_t width = kTable[0], height = kTable[1], depth = kTable[2], texels = width * height * depth;
   std::vector<std::array<double, 3>> colors(texels, {std::nan(""), 0, 0});
@@ -53,7 +65,7 @@ std::string TableJson(const ReportData& data, const ChannelColor& to_color) {
     for (const double v : colors[i]) high = std::max(high, v);
     ++known;
   }
-  if (known == 0 || !(high > 0)) return "null";
+  if (known == 0 || !(high > 0)) return nullptr;
   const double top = std::log(high), bottom = top - std::log(1e7);
   std::string bytes;
   for (const std::array<double, 3>& color : colors) {
@@ -64,43 +76,36 @@ std::string TableJson(const ReportData& data, const ChannelColor& to_color) {
       bytes.push_back(static_cast<char>(q >> 8U));
     }
   }
-  return Join({"{\"size\":", JsonList(kTable, [](std::size_t n) { return std::to_string(n); }),
-               ",\"low\":", JsonNumber(bottom), ",\"high\":", JsonNumber(top), ",\"data\":\"", Base64(bytes), "\"}"},
-              "");
+  return {{"size", kTable}, {"low", Rounded(bottom, 6)}, {"high", Rounded(top, 6)}, {"data", Base64(bytes)}};
 }
 
-std::string SlicesJson(const ReportData& data) {
+Json SlicesJson(const ReportData& data) {
   const Slices slices = GatherSlices(data.measurement, data.staying);
   std::size_t total = 0;
   for (const Slice& slice : slices.slices)
     total += std::min(slice.points.size(), kMostPointsOfASlice) * data.shown_channels.size();
   // Every second, third, ... slice of a table rather than a page that loads slowly.
   const std::size_t step = 1 + total / kMostSliceValues;
-  std::vector<std::string> list;
+  Json list = Json::array();
   for (std::size_t k = 0; k < slices.slices.size(); k += step) {
     const Slice& slice = slices.slices[k];
     std::vector<SlicePoint> points;
     const std::size_t stride = 1 + (slice.points.size() - 1) / kMostPointsOfASlice;
     for (std::size_t i = 0; i < slice.points.size(); i += stride) points.push_back(slice.points[i]);
-    const auto hundredths = [](double radians) {
-      return JsonNumber(std::round(RadiansToDegrees(radians) * 100) / 100);
-    };
-    const std::string y = JsonList(data.shown_channels, [&](std::size_t c) {
-      return JsonList(points,
-                      [&](const SlicePoint& p) { return JsonNumber(data.measurement.samples.values[c][p.sample], 4); });
-    });
-    // What the fit says at the same places, for browsers that cannot evaluate it.
-    const std::string f = JsonList(data.shown_channels, [&](std::size_t c) {
-      return JsonList(points, [&](const SlicePoint& p) {
-        return JsonNumber(static_cast<double>(data.fitted_values[c][p.sample]), 4);
+    const auto values = [&](const auto& value) {
+      return List(data.shown_channels, [&](std::size_t c) {
+        return List(points, [&](const SlicePoint& p) { return Rounded(value(c, p.sample), 4); });
       });
-    });
-    const std::string x = JsonList(points, [&](const SlicePoint& p) { return hundredths(p.theta); });
-    list.push_back(Join({"{\"theta\":", hundredths(slice.theta), ",\"phi\":", hundredths(slice.phi), ",\"x\":", x,
-                         ",\"y\":", y, ",\"f\":", f, "}"},
-                        ""));
+    };
+    list.push_back(
+        {{"theta", Hundredths(slice.theta)},
+         {"phi", Hundredths(slice.phi)},
+         {"x", List(points, [](const SlicePoint& p) { return Hundredths(p.theta); })},
+         {"y", values([&](std::size_t c, std::size_t i) { return data.measurement.samples.values[c][i]; })},
+         // What the fit says at the same places, for browsers that cannot evaluate it.
+         {"f", values([&](std::size_t c, std::size_t i) { return static_cast<double>(data.fitted_values[c][i]); })}});
   }
-  return Join({"{\"outgoing\":", slices.outgoing_stays ? "true" : "false", ",\"list\":[", Join(list, ","), "]}"}, "");
+  return {{"outgoing", slices.outgoing_stays}, {"list", list}};
 }
 
 std::string HexColor(Rgb c) {
@@ -109,18 +114,9 @@ std::string HexColor(Rgb c) {
   return text.data();
 }
 
-// "α_x" with markup as HTML.
-std::string HtmlSymbol(const Parameter& parameter) {
-  std::string symbol = Symbol(parameter);
-  const std::size_t at = symbol.find('_');
-  if (at != std::string::npos) symbol = Join({symbol.substr(0, at), "<sub>", symbol.substr(at + 1), "</sub>"}, "");
-  if (LobeOf(parameter) > 0) symbol += Join({" (", std::to_string(LobeOf(parameter) + 1), ")"}, "");
-  return symbol;
-}
-
-std::string ParametersJson(const ReportData& data) {
+Json ParametersJson(const ReportData& data) {
   const std::vector<Parameter> parameters = Parameters(data.material.model);
-  std::vector<std::string> list;
+  Json list = Json::array();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const Parameter& parameter = parameters[p];
     const double factor = 1 / InsideFactor(parameter);
@@ -134,30 +130,31 @@ std::string ParametersJson(const ReportData& data) {
       high = std::min(high, std::max(6.0, 2 * most));
     if (parameter.name.find("scale") != std::string::npos) high = std::max(1.0, 4 * most);
     if (parameter.group == ParameterGroup::kDiffuse) high = std::max(1.0, 1.5 * most);
-    list.push_back(Join(
-        {"{\"name\":", JsonString(parameter.name), ",\"label\":", JsonString(HtmlSymbol(parameter)),
-         ",\"unit\":", JsonString(parameter.unit), ",\"low\":", JsonNumber(low), ",\"high\":", JsonNumber(high),
-         ",\"log\":", logarithmic ? "true" : "false", ",\"free\":", data.material.parameters[p].free ? "true" : "false",
-         ",\"values\":", JsonList(values, [factor](double v) { return JsonNumber(v * factor, 12); }), "}"},
-        ""));
+    list.push_back({{"name", parameter.name},
+                    {"symbol", Symbol(parameter)},
+                    {"lobe", LobeOf(parameter)},
+                    {"unit", parameter.unit},
+                    {"low", Rounded(low, 6)},
+                    {"high", Rounded(high, 6)},
+                    {"log", logarithmic},
+                    {"free", data.material.parameters[p].free},
+                    {"values", List(values, [factor](double v) { return Rounded(v * factor, 12); })}});
   }
-  return Join({"[", Join(list, ","), "]"}, "");
+  return list;
 }
 
-// f_r of the program at a few directions, for the page's test of itself.
-std::string CheckJson(const ReportData& data) {
-  std::vector<std::string> rows;
-  std::vector<double> f_r(data.channels());
-  for (int k = 0; k < 24; ++k) {
-    const Vec3 wi = FromSpherical(0.06 * k, 1.1 * k), wo = FromSpherical(1.4 - 0.055 * k, 2.3 * k + 1);
-    data.fitted.Evaluate(wi, wo, f_r.data());
-    const auto vector = [](const Vec3& w) {
-      return JsonList(std::array{w.x, w.y, w.z}, [](double v) { return JsonNumber(v, 17); });
-    };
-    rows.push_back(Join(
-        {"[", vector(wi), ",", vector(wo), ",", JsonList(f_r, [](double v) { return JsonNumber(v, 12); }), "]"}, ""));
+Json LobesJson(const Model& model) {
+  Json lobes = Json::array();
+  for (std::size_t l = 0; l < model.lobes.size(); ++l) {
+    const Lobe& lobe = model.lobes[l];
+    lobes.push_back({{"family", FamilyOf(lobe.ndf) == NdfFamily::kBeckmann ? 1 : 0},
+                     {"round", IsRound(lobe.ndf)},
+                     {"masking", NameOf(MaskingChoices(), lobe.masking)},
+                     {"fresnel", NameOf(FresnelChoices(), lobe.fresnel)},
+                     {"first", FirstParameter(model, l)},
+                     {"fresnelParameters", FresnelParameters(lobe.fresnel)}});
   }
-  return Join({"[", Join(rows, ","), "]"}, "");
+  return lobes;
 }
 
 }  // namespace
@@ -165,66 +162,31 @@ std::string CheckJson(const ReportData& data) {
 std::string DataJson(const ReportData& data) {
   const ChannelColor to_color(data.measurement.channels);
   const Model& model = data.material.model;
-  const LitSphere reference = LightFitted(data, to_color, kReferenceSize);
-  const double exposure = SphereExposure(LightFitted(data, to_color, 128));
-  std::string bytes;
-  for (const auto& color : reference.color) {
-    const Rgb c = ToScreen(color, exposure);
-    for (const std::uint8_t v : {c.r, c.g, c.b}) bytes.push_back(static_cast<char>(v));
-  }
   const auto darker = [](Rgb c) {
     const auto mute = [](int v) { return static_cast<std::uint8_t>(v * 7 / 10); };
     return Rgb{mute(c.r), mute(c.g), mute(c.b)};
   };
-  std::vector<std::array<double, 3>> rgb;
+  Json rgb = Json::array();
   for (std::size_t c = 0; c < data.channels(); ++c) {
     std::vector<double> unit(data.channels());
     unit[c] = 1;
-    rgb.push_back(to_color.Linear(unit.data()));
+    rgb.push_back(List(to_color.Linear(unit.data()), [](double v) { return Rounded(v, 12); }));
   }
-  const auto number = [](double v) { return JsonNumber(v, 12); };
-  std::vector<std::string> lobes;
-  for (std::size_t l = 0; l < model.lobes.size(); ++l) {
-    const Lobe& lobe = model.lobes[l];
-    lobes.push_back(Join({"{\"family\":", FamilyOf(lobe.ndf) == NdfFamily::kBeckmann ? "1" : "0",
-                          ",\"round\":", IsRound(lobe.ndf) ? "true" : "false",
-                          ",\"masking\":", JsonString(NameOf(MaskingChoices(), lobe.masking)),
-                          ",\"fresnel\":", JsonString(NameOf(FresnelChoices(), lobe.fresnel)),
-                          ",\"first\":", std::to_string(FirstParameter(model, l)),
-                          ",\"fresnelParameters\":", std::to_string(FresnelParameters(lobe.fresnel)), "}"},
-                         ""));
-  }
-  const char* diffuse = model.diffuse == Diffuse::kNone ? "0" : model.diffuse == Diffuse::kLambert ? "1" : "2";
-  return Join({"{\"channels\":",
-               JsonList(data.channel_names, [](const std::string& s) { return JsonString(s); }),
-               ",\"colors\":",
-               JsonList(data.channel_colors, [](Rgb c) { return JsonString(HexColor(c)); }),
-               ",\"dark\":",
-               JsonList(data.channel_colors, [&](Rgb c) { return JsonString(HexColor(darker(c))); }),
-               ",\"shown\":",
-               JsonList(data.shown_channels, [](std::size_t c) { return std::to_string(c); }),
-               ",\"rgb\":",
-               JsonList(rgb, [&](const std::array<double, 3>& color) { return JsonList(color, number); }),
-               ",\"model\":{\"diffuse\":",
-               diffuse,
-               ",\"lobes\":[",
-               Join(lobes, ","),
-               "]},\"parameters\":",
-               ParametersJson(data),
-               ",\"slices\":",
-               SlicesJson(data),
-               ",\"table\":",
-               data.measurement.isotropic ? TableJson(data, to_color) : "null",
-               ",\"exposure\":",
-               number(exposure),
-               ",\"reference\":{\"size\":",
-               std::to_string(kReferenceSize),
-               ",\"data\":\"",
-               Base64(bytes),
-               "\"},\"check\":",
-               CheckJson(data),
-               "}"},
-              "");
+  const int diffuse = model.diffuse == Diffuse::kNone ? 0 : model.diffuse == Diffuse::kLambert ? 1 : 2;
+  const Json json = {{"channels", data.channel_names},
+                     {"colors", List(data.channel_colors, HexColor)},
+                     {"dark", List(data.channel_colors, [&](Rgb c) { return HexColor(darker(c)); })},
+                     {"shown", data.shown_channels},
+                     {"rgb", rgb},
+                     {"model", {{"diffuse", diffuse}, {"lobes", LobesJson(model)}}},
+                     {"parameters", ParametersJson(data)},
+                     {"slices", SlicesJson(data)},
+                     {"table", data.measurement.isotropic ? TableJson(data, to_color) : Json(nullptr)},
+                     {"exposure", Rounded(SphereExposure(LightFitted(data, to_color, 128)), 12)}};
+  // Within a <script> element only '<' could end it; JSON has it in strings alone.
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
+  for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return safe;
 }
 
 }  // namespace lobefit

@@ -8,16 +8,22 @@
 #include <regex>
 
 #include "tests/report/synthetic.h"
+#include "tests/support/paths.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "lobefit/base/base64.h"
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/plot/color.h"
 #include "lobefit/report/figures/page.h"
+#include "lobefit/report/figures/sphere.h"
 #include "lobefit/report/report.h"
-#include "lobefit/report/web/text.h"
+#include "lobefit/report/web/template.h"
 
 namespace lobefit {
 namespace {
@@ -25,12 +31,12 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(WebText, EscapesWhatWouldEndItsElement) {
-  EXPECT_EQ(JsonString("a\"b\\</script>\n"), "\"a\\u0022b\\u005c\\u003c/script\\u003e\\u000a\"");
-  EXPECT_EQ(HtmlText("<b> & \"c\""), "&lt;b&gt; &amp; &quot;c&quot;");
-  EXPECT_EQ(JsonString("\xff\xce\xb8"), "\"\xEF\xBF\xBDθ\"");
-  EXPECT_EQ(JsonNumber(std::nan("")), "null");
-  EXPECT_EQ(JsonNumber(0.1234567, 4), "0.1235");
+TEST(FillTemplate, ReplacesOnceAndKeepsSections) {
+  EXPECT_EQ(
+      FillTemplate("a {{x}}{{#s}} b {{x}}{{/s}}{{#t}} c {{y}}{{/t}}.", {{"x", "{{y}}"}}, {{"s", true}, {"t", false}}),
+      "a {{y}} b {{y}}.");
+  EXPECT_THROW(FillTemplate("{{x}}", {}, {}), std::logic_error);
+  EXPECT_THROW(FillTemplate("{{#s}}", {}, {{"s", true}}), std::logic_error);
 }
 
 TEST(Base64, OfRfc4648) {
@@ -47,6 +53,7 @@ struct PageCase {
   std::size_t channels;
   bool isotropic, table, out_of_plane;
   Material (*material)(std::size_t channels) = nullptr;  // null: test::MakeMaterial
+  bool hostile = false;
 };
 
 std::ostream& operator<<(std::ostream& out, const PageCase& c) { return out << c.name; }
@@ -102,43 +109,92 @@ Material TiltedConductorOverFacets(std::size_t channels) {
       channels);
 }
 
+// What the page is to show and to compute, for its test of itself.
+std::string TruthJson(const ReportData& data) {
+  constexpr int kSize = 40;
+  const ChannelColor to_color(data.measurement.channels);
+  const double exposure = SphereExposure(LightFitted(data, to_color, 128));
+  std::string bytes;
+  for (const auto& color : LightFitted(data, to_color, kSize).color) {
+    const Rgb c = ToScreen(color, exposure);
+    for (const std::uint8_t v : {c.r, c.g, c.b}) bytes.push_back(static_cast<char>(v));
+  }
+  nlohmann::json check = nlohmann::json::array();
+  std::vector<double> f_r(data.channels());
+  for (int k = 0; k < 24; ++k) {
+    const Vec3 wi = FromSpherical(0.06 * k, 1.1 * k), wo = FromSpherical(1.4 - 0.055 * k, 2.3 * k + 1);
+    data.fitted.Evaluate(wi, wo, f_r.data());
+    check.push_back({{wi.x, wi.y, wi.z}, {wo.x, wo.y, wo.z}, f_r});
+  }
+  return nlohmann::json{{"reference", {{"size", kSize}, {"data", Base64(bytes)}}}, {"check", check}}.dump();
+}
+
+std::string OutputOf(const std::string& command) {
+  std::string out;
+  std::FILE* pipe = popen(command.c_str(), "r");
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out.push_back(static_cast<char>(c));
+  pclose(pipe);
+  return out;
+}
+
 class HtmlPage : public testing::TestWithParam<PageCase> {
  protected:
   void SetUp() override {
     const PageCase& c = GetParam();
     Material material = c.material != nullptr ? c.material(c.channels) : test::MakeMaterial(c.channels, c.isotropic);
     material.source.file = "odd <name> & \"more\".csv";
-    const Measurement measurement =
+    Measurement measurement =
         test::Measure(material, c.table ? test::TablePairs() : test::GoniometerPairs(c.out_of_plane), 0.05, c.table);
-    path_ = std::filesystem::path(testing::TempDir()) / (std::string("page_") + c.name + ".report.html");
+    if (c.hostile) {
+      // What a measurement file can call its channels, its sample and itself.
+      const std::vector<std::string> names = {
+          "<img src=x onerror=\"document.title='RAN'\">", "</script><script>alert(1)</script>",
+          "<svg onload=alert(2)> & ' \" \\ \n {{title}} \xff " + std::string(10000, 'n')};
+      material.channels = measurement.channels.names = names;
+      material.source.file = measurement.source = names[0] + names[1] + names[2];
+      material.recipe_name = material.recipe_reason = names[1];
+      material.remarks = names;
+    }
+    path_ = TemporaryPath(std::string(c.name) + ".report.html");
     WriteReportHtml(material, measurement, path_, {.threads = 2, .scale = 1, .font_folders = {}});
+    truth_ = TruthJson(ReportData(material, measurement, 2));
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  static std::filesystem::path TemporaryPath(const std::string& name) {
+    return std::filesystem::path(testing::TempDir()) / ("page_" + std::to_string(getpid()) + "_" + name);
   }
 
-  // The page's own account of a visit with `hash`, or "" without a browser.
-  std::string Visit(const std::string& hash) const {
+  std::string Html() const { return std::string(FileBytes(path_).bytes()); }
+
+  // The page's own account of itself, or "" without a browser. The test's script stands before the page's policy, which
+  // is left as it is.
+  std::string Visit(const std::string& flags) const {
     if (std::system("command -v chromium >/dev/null 2>&1") != 0) return "";
-    const std::filesystem::path profile = path_.string() + hash.substr(1) + ".profile";
-    const std::string command = Join({"timeout 300 chromium --headless=new --no-sandbox --use-angle=swiftshader "
-                                      "--enable-unsafe-swiftshader --disable-quic --no-first-run",
-                                      "--disable-background-networking --disable-component-update --disable-sync "
-                                      "--virtual-time-budget=10000 --user-data-dir='" +
-                                          profile.string() + "'",
-                                      "--dump-dom 'file://" + path_.string() + hash + "' 2>/dev/null"},
-                                     " ");
-    std::string dom;
-    std::FILE* pipe = popen(command.c_str(), "r");
-    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) dom.push_back(static_cast<char>(c));
-    pclose(pipe);
+    const std::string mark = "<meta charset=\"utf-8\">\n";
+    std::string html = Html();
+    const std::string script(FileBytes(test::SourceDir() / "tests/report/web/page_selftest.js").bytes());
+    html.insert(html.find(mark) + mark.size(), "<script>const truth = " + truth_ + ";\n" + script + "</script>\n");
+    const std::filesystem::path page = path_.string() + ".test.html", profile = path_.string() + ".profile";
+    WriteFileAtomically(page, html);
+    const std::string dom = OutputOf(
+        Join({"timeout 300 chromium --headless=new --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader",
+              "--disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync",
+              "--window-size=500,900 --virtual-time-budget=10000 --user-data-dir='" + profile.string() + "'", flags,
+              "--dump-dom 'file://" + page.string() + "' 2>/dev/null"},
+             " "));
     std::error_code ignored;
     std::filesystem::remove_all(profile, ignored);
-    const std::string mark = "<pre id=\"result\">";
-    const std::size_t begin = dom.find(mark);
+    std::filesystem::remove(page, ignored);
+    const std::string result_mark = "<pre id=\"result\">";
+    const std::size_t begin = dom.find(result_mark);
     return begin == std::string::npos
                ? "no result"
-               : dom.substr(begin + mark.size(), dom.find("</pre>", begin) - begin - mark.size());
+               : dom.substr(begin + result_mark.size(), dom.find("</pre>", begin) - begin - result_mark.size());
   }
 
   std::filesystem::path path_;
+  std::string truth_;
 };
 
 double NumberAfter(const std::string& json, const std::string& key) {
@@ -148,21 +204,25 @@ double NumberAfter(const std::string& json, const std::string& key) {
 }
 
 TEST_P(HtmlPage, IsOneSmallFileThatNamesNoOther) {
-  const MappedFile file(path_);
-  const std::string html(file.bytes());
+  const std::string html = Html();
   EXPECT_LT(html.size(), 3000000U);
   for (const char* remote : {"http://", "https://", "@import", "src=\"/", "href=\"/", "fetch(", "XMLHttpRequest"})
     EXPECT_THAT(html, Not(HasSubstr(remote)));
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(html, Not(HasSubstr("unsafe-inline")));
+  for (const char* hook : {"selftest", "innerHTML", "{{"}) EXPECT_THAT(html, Not(HasSubstr(hook)));
   EXPECT_THAT(html, HasSubstr("odd &lt;name&gt; &amp; &quot;more&quot;.csv"));
   EXPECT_THAT(html, HasSubstr("<img alt=\"In-plane curves: "));
 }
 
 TEST_P(HtmlPage, LivesInABrowser) {
-  const std::string result = Visit("#selftest");
+  const std::string result = Visit("");
   if (result.empty()) GTEST_SKIP() << "Chromium is not installed";
   EXPECT_THAT(result, HasSubstr("\"webgl\":true"));
   EXPECT_EQ(NumberAfter(result, "requests"), 0) << result;
+  EXPECT_EQ(NumberAfter(result, "dialogs"), 0) << result;
+  EXPECT_EQ(NumberAfter(result, "elements"), 0) << result;
+  EXPECT_THAT(result, HasSubstr("\"violations\":[]"));
   // The fitted sphere against the program's own picture: 2 % of the range.
   EXPECT_LE(NumberAfter(result, "sphereWorst"), 0.02) << result;
   EXPECT_GE(NumberAfter(result, "differsFromBackground"), 0.5) << result;
@@ -188,10 +248,41 @@ INSTANTIATE_TEST_SUITE_P(
                     PageCase{"spectral_conductor_over_facets", 5, false, false, false, TiltedConductorOverFacets}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
+class HostilePage : public HtmlPage {};
+
+TEST_P(HostilePage, IsTextAndNothingElse) {
+  const std::string html = Html();
+  for (const char* live : {"<img src=x", "<svg onload", "</script><script>alert", "\xff"})
+    EXPECT_THAT(html, Not(HasSubstr(live)));
+  const std::string result = Visit("");
+  if (result.empty()) GTEST_SKIP() << "Chromium is not installed";
+  EXPECT_THAT(result, HasSubstr("\"webgl\":true"));
+  EXPECT_EQ(NumberAfter(result, "requests"), 0) << result;
+  EXPECT_EQ(NumberAfter(result, "dialogs"), 0) << result;
+  EXPECT_EQ(NumberAfter(result, "elements"), 0) << result;
+  EXPECT_THAT(result, HasSubstr("\"violations\":[]"));
+  EXPECT_THAT(result, Not(HasSubstr("\"title\":\"RAN")));
+  EXPECT_LE(NumberAfter(result, "modelWorst"), 1e-3) << result;
+}
+
+TEST_P(HostilePage, HasAShaderThatCompiles) {
+  if (std::system("command -v glslangValidator >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "glslangValidator is not installed";
+  const std::string html = Html(), mark = "<script id=\"shader\" type=\"text/plain\">";
+  const std::size_t begin = html.find(mark) + mark.size();
+  const std::filesystem::path shader = path_.string() + ".frag";
+  WriteFileAtomically(shader, html.substr(begin, html.find("</script>", begin) - begin));
+  EXPECT_THAT(OutputOf("glslangValidator '" + shader.string() + "' 2>&1 || true"), Not(HasSubstr("ERROR")));
+  std::filesystem::remove(shader);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, HostilePage, testing::Values(PageCase{"hostile", 3, true, true, true, nullptr, true}),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
+
 class HtmlPageWithoutWebGl : public HtmlPage {};
 
 TEST_P(HtmlPageWithoutWebGl, KeepsPicturesAndSlices) {
-  const std::string result = Visit("#nogl");
+  const std::string result = Visit("--disable-3d-apis");
   if (result.empty()) GTEST_SKIP() << "Chromium is not installed";
   EXPECT_THAT(result, HasSubstr("\"webgl\":false"));
   EXPECT_THAT(result, HasSubstr("\"sliceFollows\":true"));
@@ -204,9 +295,10 @@ TEST(HtmlPageOfAModelThatIsNotLive, HoldsPicturesOnly) {
   Material material = test::MakeMaterial(1, false);
   const Measurement measurement = test::Measure(material, test::GoniometerPairs(true), 0.05, false);
   material.model.lobes[0].ndf = Ndf::kKagiwadaKalaba;
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "not_live.html";
+  const std::filesystem::path path =
+      std::filesystem::path(testing::TempDir()) / ("not_live_" + std::to_string(getpid()) + ".html");
   WriteReportHtml(material, measurement, path, {.threads = 2, .scale = 1, .font_folders = {}});
-  const std::string html(MappedFile(path).bytes());
+  const std::string html(FileBytes(path).bytes());
   EXPECT_THAT(html, HasSubstr("<img alt=\"In-plane curves: "));
   EXPECT_THAT(html, HasSubstr("shown in pictures only"));
   EXPECT_THAT(html, HasSubstr("<th scope=\"row\">alpha_x</th>"));

@@ -1,6 +1,5 @@
-R"lobefit(#version 300 es
-precision highp float;
-precision highp int;
+// Fragment shader of the page: the sphere of the fit, the measured one, and values of f_r for the slice. It stands behind the version,
+// the precision of numbers and the functions of lobe.glsl.
 precision highp sampler2D;
 precision highp sampler3D;
 in vec2 at;
@@ -20,9 +19,7 @@ uniform float exposure;
 uniform float texel;         // size of a pixel in units of the radius
 uniform sampler3D table;
 uniform vec3 tableSize;
-const float PI = 3.14159265358979;)lobefit"
-#include "lobefit/core/brdf/lobe.glsl.inc"
-R"lobefit(
+const float PI = 3.14159265358979;
 // The rule of diffuse_facets.h with 12 radii by 24 angles: radii, and share of the density at each of the 24 nodes.
 const float GGX_RADII[12] = float[12](
   0.0144832566, 0.0754488084, 0.182711419, 0.335967826, 0.54177173, 0.820372051,
@@ -145,4 +142,3 @@ void main() {
   float inside = clamp((1.0 - r) / texel + 0.5, 0.0, 1.0);
   color = vec4(mix(vec3(1.0), shown, inside), 1.0);
 }
-)lobefit"

@@ -1,9 +1,9 @@
-R"lobefit(
+// The live page of a report: sliders of the parameters, a slice with its measured values, and the spheres. Names in `data` come
+// from measurement files: they become text nodes and nothing else.
 'use strict';
 const data = JSON.parse(document.getElementById('data').textContent);
 const $ = id => document.getElementById(id);
 const rad = Math.PI / 180;
-const testing = location.hash === '#selftest' || location.hash === '#nogl';
 const values = data.parameters.map(p => p.values.slice());
 
 // ---- the shape of a lobe; all else of the model is evaluated by the shader, on the graphics card ----
@@ -35,7 +35,7 @@ function addSlider(label, aria, p, get, set) {
   const row = document.createElement('div'); row.className = 'param';
   const name = document.createElement('label'), input = document.createElement('input'), out = document.createElement('output');
   input.type = 'range'; input.min = 0; input.max = SLIDER; input.step = 'any'; input.id = 'p' + sliders.length; name.htmlFor = input.id;
-  name.innerHTML = label; input.setAttribute('aria-label', aria);
+  name.append(...label); input.setAttribute('aria-label', aria);
   row.append(name, input, out); $('sliders').append(row);
   const scale = scaleOf(p), start = get();
   const show = () => { out.textContent = number(get()) + (p.unit === 'deg' ? '°' : ''); input.setAttribute('aria-valuetext', out.textContent);
@@ -51,14 +51,25 @@ function addSlider(label, aria, p, get, set) {
   sliders.push({input, place, reset: () => { set(start); place(); }, aria});
   place();
 }
+// "α_x" with what follows the underscore lowered, then `rest`: nodes, since names of channels come from files.
+function labelOf(p, rest) {
+  const [symbol, lowered] = p.symbol.split('_'), nodes = [symbol];
+  if (lowered) {
+    const sub = document.createElement('sub');
+    sub.textContent = lowered;
+    nodes.push(sub);
+  }
+  if (p.lobe > 0) nodes.push(` (${p.lobe + 1})`);
+  return nodes.concat(rest);
+}
 data.parameters.forEach((p, i) => {
   if (!p.free) return;
   if (p.values.length <= 3) {
-    p.values.forEach((_, c) => addSlider(p.label + (p.values.length > 1 ? ' ' + data.channels[c] : ''), p.name + (p.values.length > 1 ? ' ' + data.channels[c] : ''), p,
-      () => values[i][c], v => { values[i][c] = v; }));
+    const channel = c => p.values.length > 1 ? ' ' + data.channels[c] : '';
+    p.values.forEach((_, c) => addSlider(labelOf(p, channel(c)), p.name + channel(c), p, () => values[i][c], v => { values[i][c] = v; }));
   } else {  // many channels move together
     let factor = 1;
-    addSlider(p.label + ' ×', p.name + ' factor', {low: 0.1, high: 4, log: true, unit: ''}, () => factor,
+    addSlider(labelOf(p, ' ×'), p.name + ' factor', {low: 0.1, high: 4, log: true, unit: ''}, () => factor,
       v => { factor = v; values[i] = p.values.map(x => x * factor); });
   }
 });
@@ -212,7 +223,7 @@ function half(base64) {  // 16-bit logarithms to floats
 }
 function startGl() {
   const canvas = $('sphere');
-  gl = location.hash === '#nogl' ? null : canvas.getContext('webgl2', {antialias: false, preserveDrawingBuffer: true});
+  gl = canvas.getContext('webgl2', {antialias: false, preserveDrawingBuffer: true});
   if (!gl) return false;
   const shader = (type, source) => { const s = gl.createShader(type); gl.shaderSource(s, source); gl.compileShader(s);
     if (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(s)); return s; };
@@ -313,7 +324,7 @@ function renderSphere(x, y, size, measured, edge) {
 }
 function renderSpheres() {
   if (!gl) return;
-  const canvas = $('sphere'), count = data.table ? 2 : 1, size = Math.min(testing ? 120 : 720, Math.max(64, Math.round(canvas.clientWidth / 2 * (window.devicePixelRatio || 1))));
+  const canvas = $('sphere'), count = data.table ? 2 : 1, size = Math.min(720, Math.max(64, Math.round(canvas.clientWidth / 2 * (window.devicePixelRatio || 1))));
   if (canvas.width !== 2 * size) { canvas.width = 2 * size; canvas.height = size; }
   setModel();
   gl.viewport(0, 0, canvas.width, canvas.height);
@@ -337,65 +348,7 @@ setLight(light);
 let failure = '';
 try { if (!startGl()) failure = 'WebGL 2 is not available'; } catch (e) { gl = null; failure = String(e); }
 if (!gl) { for (const id of ['sphereSection', 'parameterSection']) $(id).classList.add('hidden'); $('noGl').classList.remove('hidden'); }
-if (!data.table) $('names').innerHTML = '<span>fitted</span>';
+if (!data.table) $('names').firstElementChild.remove();
 function update() { plotSlice(); renderSpheres(); }
 window.addEventListener('resize', renderSpheres);
 update();
-
-// ---- the page tests itself when asked to: page.html#selftest ----
-if (testing) {
-  const result = {webgl: !!gl, failure, requests: performance.getEntriesByType('resource').filter(r => !r.name.startsWith('data:')).length};
-  if (gl) {
-    const ref = data.reference, n = ref.size, bytes = new Uint8Array(4 * n * n);
-    const read = () => { setModel(); gl.disable(gl.BLEND); renderSphere(0, 0, n, 0, 1); gl.readPixels(0, 0, n, n, gl.RGBA, gl.UNSIGNED_BYTE, bytes); return bytes.slice(); };
-    const first = read(), expected = atob(ref.data);
-    let worst = 0, sum = 0, count = 0, background = 0;
-    for (let row = 0; row < n; ++row) for (let col = 0; col < n; ++col) {
-      const x = (col + 0.5) / n * 2 - 1, y = 1 - (row + 0.5) / n * 2;
-      if (Math.hypot(x, y) > 1 - 2 / n) continue;
-      for (let c = 0; c < 3; ++c) {
-        const got = first[4 * ((n - 1 - row) * n + col) + c], want = expected.charCodeAt(3 * (row * n + col) + c);
-        worst = Math.max(worst, Math.abs(got - want)); sum += Math.abs(got - want); ++count;
-        if (got !== 255) ++background;
-      }
-    }
-    result.sphereWorst = worst / 255; result.sphereMean = sum / count / 255; result.differsFromBackground = background / count;
-    const s = sliders[0], before = s.input.value;
-    s.input.value = before > SLIDER / 2 ? SLIDER * 0.2 : SLIDER * 0.8; s.input.dispatchEvent(new Event('input'));
-    const moved = read();
-    let changed = 0;
-    for (let i = 0; i < moved.length; ++i) if (Math.abs(moved[i] - first[i]) > 2) ++changed;
-    result.sliderChanges = changed / moved.length;
-    if (slices.length) {
-      const curve = () => document.querySelector('#slice .curve').getAttribute('d'), after = curve();
-      $('reset').click();
-      result.sliderMovesSlice = curve() !== after;
-    }
-    $('reset').click();
-    const back = read();
-    result.resetRestores = back.every((v, i) => v === first[i]);
-    const was = light;
-    $('lightX').value = 50; $('lightX').dispatchEvent(new Event('input'));
-    result.lightChanges = read().some((v, i) => Math.abs(v - back[i]) > 20);
-    setLight(was); renderSpheres();
-  }
-  if (slices.length > 1) {
-    const curve = () => document.querySelector('#slice .curve').getAttribute('d');
-    const before = curve();
-    thetaSelect.selectedIndex = (thetaSelect.selectedIndex + 1) % thetaSelect.length; thetaSelect.dispatchEvent(new Event('change'));
-    result.sliceFollows = curve() !== before;
-    const log = curve();
-    $('scale').click();
-    result.scaleFollows = curve() !== log;
-    $('scale').click();
-  }
-  if (drawn) { showPoint(0); result.hover = $('hover').textContent; }
-  // The shader against values of the program.
-  if (gl) {
-    const got = evaluate(data.check.map(([wi, wo]) => [wi, wo]));
-    result.modelWorst = Math.max(...data.check.map(([, , f], i) => Math.max(...f.map((v, c) => Math.abs(got[c][i] - v) / Math.max(v, 1e-12)))));
-  }
-  result.unnamed = [...document.querySelectorAll('input,select,button,canvas,svg[role],img')].filter(e => !(e.labels && e.labels.length) && !e.getAttribute('aria-label') && !e.getAttribute('alt') && !(e.tagName === 'BUTTON' && e.textContent)).length;
-  const out = document.createElement('pre'); out.id = 'result'; out.textContent = JSON.stringify(result); document.body.append(out);
-}
-)lobefit"

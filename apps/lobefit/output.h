@@ -1,0 +1,45 @@
+// Text for people on standard output, or on standard error where standard output carries data.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/printable.h"
+#include "lobefit/base/text.h"
+
+namespace lobefit {
+
+// Names of channels, samples and files come from files: nothing in `text` but newlines and tabs moves the cursor.
+inline void Print(const std::string& text, std::FILE* stream = stdout) {
+  fmt::print(stream, "{}", PrintableLines(text));
+}
+
+// Where a verb's summary goes that writes `output`.
+inline std::FILE* SummaryStream(const std::filesystem::path& output) {
+  return IsStandardOutput(output) ? stderr : stdout;
+}
+
+// NAME of the results of `file`: as given, or the file's name without its ending. Throws UsageError for a path.
+inline std::string ResultName(const std::string& given, const std::filesystem::path& file) {
+  const std::string name = !given.empty() ? given : file == "-" ? "stdin" : file.stem().string();
+  if (name.find('/') != std::string::npos)
+    throw UsageError(fmt::format("--name '{}' is a path; the folder is given by --out", Excerpt(name)));
+  return name;
+}
+
+// A picture that a verb is to write, before its work. Throws UsageError for a name that says another format, and as
+// CheckOutput.
+inline void CheckPicture(const std::filesystem::path& picture, const std::vector<std::filesystem::path>& inputs) {
+  if (picture.extension() != ".png" && !IsStream(picture)) {
+    throw UsageError(fmt::format("{}: the picture is a PNG; end its name in .png", PrintableName(picture)));
+  }
+  CheckOutput(picture, inputs);
+}
+
+}  // namespace lobefit

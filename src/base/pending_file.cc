@@ -1,0 +1,122 @@
+#include "lobefit/base/pending_file.h"
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <mutex>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include "lobefit/base/file.h"
+
+namespace lobefit {
+namespace {
+
+// Folder and name of temporary files that have one: all that a signal handler may use is memory that is always there.
+struct Slot {
+  std::atomic<bool> taken{false}, named{false};
+  int folder = -1;
+  std::array<char, 48> name = {};
+};
+constexpr std::size_t kSlots = 64;
+
+std::array<Slot, kSlots>& Slots() {
+  static std::array<Slot, kSlots> slots;
+  return slots;
+}
+
+extern "C" void RemoveTemporaries(int signal) {
+  for (Slot& slot : Slots()) {
+    if (slot.named) unlinkat(slot.folder, slot.name.data(), 0);
+  }
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+}
+
+[[noreturn]] void ThrowErrno() { throw std::system_error(errno, std::generic_category()); }
+
+std::string RandomName() {
+  std::array<unsigned char, 16> bytes = {};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) ThrowErrno();
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string name = ".lobefit-";
+  for (const unsigned char byte : bytes) {
+    name += kDigits[byte >> 4];
+    name += kDigits[byte & 15];
+  }
+  return name;
+}
+
+}  // namespace
+
+void RemoveTemporariesOnSignal(int signal) {
+  Slots();  // made here, not in the handler
+  std::signal(signal, RemoveTemporaries);
+}
+
+PendingFile::PendingFile(const std::filesystem::path& folder) {
+  folder_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder_ < 0) ThrowErrno();
+  descriptor_ = openat(folder_, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+  // Without /proc an unnamed file cannot be given a name.
+  if (descriptor_ >= 0 && access("/proc/self/fd", X_OK) == 0) return;
+  if (descriptor_ >= 0) close(descriptor_);
+  RememberName();
+  descriptor_ = openat(folder_, name_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (descriptor_ >= 0) return;
+  const int reason = errno;
+  ForgetName();
+  close(folder_);
+  errno = reason;
+  ThrowErrno();
+}
+
+PendingFile::~PendingFile() {
+  if (!name_.empty()) unlinkat(folder_, name_.c_str(), 0);
+  ForgetName();
+  close(descriptor_);
+  close(folder_);
+}
+
+void PendingFile::TakePlaceOf(const std::string& name) {
+  // EINVAL: a file system without anything to bring to a disk.
+  if (fsync(descriptor_) != 0 && errno != EINVAL) ThrowErrno();
+  if (name_.empty()) {
+    RememberName();
+    const std::string self = "/proc/self/fd/" + std::to_string(descriptor_);
+    if (linkat(AT_FDCWD, self.c_str(), folder_, name_.c_str(), AT_SYMLINK_FOLLOW) != 0) ThrowErrno();
+  }
+  if (renameat(folder_, name_.c_str(), folder_, name.c_str()) != 0) ThrowErrno();
+  ForgetName();
+  // The new name too; it is there already for every other process, so that a failure undoes nothing.
+  fsync(folder_);
+}
+
+void PendingFile::RememberName() {
+  name_ = RandomName();
+  for (std::size_t i = 0; i < kSlots; ++i) {
+    Slot& slot = Slots()[i];
+    if (slot.taken.exchange(true)) continue;
+    slot.folder = folder_;
+    std::memcpy(slot.name.data(), name_.c_str(), name_.size() + 1);
+    slot.named = true;
+    slot_ = static_cast<int>(i);
+    return;
+  }
+}
+
+void PendingFile::ForgetName() {
+  name_.clear();
+  if (slot_ < 0) return;
+  Slot& slot = Slots()[static_cast<std::size_t>(slot_)];
+  slot.named = false;
+  slot.taken = false;
+  slot_ = -1;
+}
+
+}  // namespace lobefit
