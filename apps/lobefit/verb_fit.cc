@@ -59,7 +59,7 @@ int Judge(const Material& material) {
 Measurement Sampled(const FitVerb& verb) {
   Measurement measurement = SampleForSel(ReadModelMaterial(verb.files[0]));
   measurement.source = std::filesystem::path(verb.files[0]).filename().string();
-  measurement.sha256 = Sha256Hex(MappedFile(verb.files[0]).bytes());
+  measurement.sha256 = Sha256Hex(FileBytes(verb.files[0]).bytes());
   verb.measurement.Select(&measurement);
   return measurement;
 }

@@ -5,7 +5,7 @@
 namespace lobefit {
 namespace {
 
-constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+constexpr std::string_view kBase64Digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 }  // namespace
 
@@ -16,7 +16,7 @@ std::string Base64(std::string_view bytes) {
     const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
     std::uint32_t word = 0;
     for (std::size_t k = 0; k < 3; ++k) word = word << 8U | (k < have ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text.push_back(k <= have ? kDigits[word >> (18U - 6U * k) & 63U] : '=');
+    for (std::size_t k = 0; k < 4; ++k) text.push_back(k <= have ? kBase64Digits[word >> (18U - 6U * k) & 63U] : '=');
   }
   return text;
 }
@@ -30,7 +30,7 @@ std::optional<std::string> FromBase64(std::string_view text) {
   std::uint32_t word = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool pad = i >= text.size() - padding;
-    const std::size_t digit = pad ? 0 : kDigits.find(text[i]);
+    const std::size_t digit = pad ? 0 : kBase64Digits.find(text[i]);
     if (digit == std::string_view::npos) return std::nullopt;
     word = word << 6U | static_cast<std::uint32_t>(digit);
     if (i % 4 != 3) continue;

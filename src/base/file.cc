@@ -16,6 +16,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/memory.h"
 #include "lobefit/base/printable.h"
+#include "lobefit/base/text.h"
 
 namespace lobefit {
 namespace {
@@ -108,15 +109,6 @@ std::string Sha256(std::string_view bytes) {
   return {digest.begin(), digest.begin() + length};
 }
 
-std::string Sha256Hex(std::string_view bytes) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string hex;
-  for (const char c : Sha256(bytes)) {
-    const auto byte = static_cast<unsigned char>(c);
-    hex += kDigits[byte >> 4];
-    hex += kDigits[byte & 15];
-  }
-  return hex;
-}
+std::string Sha256Hex(std::string_view bytes) { return Hex(Sha256(bytes)); }
 
 }  // namespace lobefit

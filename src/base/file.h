@@ -40,7 +40,7 @@ class FileBytes {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-using MappedFile = FileBytes;  // its name until the last caller has the new one
+using FileBytes = FileBytes;  // its name until the last caller has the new one
 
 // SHA-256: 32 bytes, and as 64 lower-case hexadecimal digits.
 std::string Sha256(std::string_view bytes);

@@ -1,6 +1,5 @@
 #include "lobefit/base/pending_file.h"
 
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -13,6 +12,7 @@
 #include <unistd.h>
 
 #include "lobefit/base/file.h"
+#include "lobefit/base/text.h"
 
 namespace lobefit {
 namespace {
@@ -41,15 +41,9 @@ extern "C" void RemoveTemporaries(int signal) {
 [[noreturn]] void ThrowErrno() { throw std::system_error(errno, std::generic_category()); }
 
 std::string RandomName() {
-  std::array<unsigned char, 16> bytes = {};
+  std::string bytes(16, '\0');
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) ThrowErrno();
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string name = ".lobefit-";
-  for (const unsigned char byte : bytes) {
-    name += kDigits[byte >> 4];
-    name += kDigits[byte & 15];
-  }
-  return name;
+  return ".lobefit-" + Hex(bytes);
 }
 
 }  // namespace

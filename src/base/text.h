@@ -29,6 +29,8 @@ std::optional<long long> ParseInteger(std::string_view field);
 std::string DidYouMean(std::string_view name, const std::vector<std::string>& allowed);
 
 // "a, b, c".
+// Two digits a byte.
+std::string Hex(std::string_view bytes);
 std::string Join(const std::vector<std::string>& items, std::string_view separator = ", ");
 
 // A piece of the input that is fit to stand in a message: at most `max_length` characters, control characters as '?'.

@@ -7,7 +7,7 @@
 namespace lobefit {
 
 ImportedMaterial ImportMaterial(const std::filesystem::path& path) {
-  const MappedFile file(path);
+  const FileBytes file(path);
   for (const Target& target : ExportTargets()) {
     if (target.read != nullptr && target.recognises(file.bytes())) return target.read({path, file.bytes()});
   }

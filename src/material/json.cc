@@ -434,7 +434,7 @@ Material MaterialFromJson(const std::string& text, const std::string& file_name)
 }
 
 Material ReadMaterial(const std::filesystem::path& path) {
-  const MappedFile file(path);
+  const FileBytes file(path);
   return MaterialFromJson(std::string(file.bytes()), path.string());
 }
 
@@ -450,7 +450,7 @@ Material ReadModelMaterial(const std::filesystem::path& path) {
 }
 
 bool LooksLikeMaterial(const std::filesystem::path& path) {
-  const MappedFile file(path);
+  const FileBytes file(path);
   const std::string_view head = file.bytes().substr(0, 256);
   return !head.empty() && head[0] == '{' && head.find("\"lobefit material\"") != std::string_view::npos;
 }

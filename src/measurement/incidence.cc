@@ -118,7 +118,7 @@ Incidences GroupByIncidence(const Measurement& measurement, double resolution) {
   return GroupByDirection(measurement, measurement.listed_side, resolution);
 }
 
-Incidences GroupByDirection(const Measurement& measurement, Side side, double resolution) {
+Incidences GroupByDirection(const Measurement& measurement, Beam side, double resolution) {
   const Samples& samples = measurement.samples;
   Incidences incidences;
   incidences.group.resize(samples.size());
@@ -132,7 +132,7 @@ Incidences GroupByDirection(const Measurement& measurement, Side side, double re
   DirectionMerger merger(resolution);
   std::vector<Vec3> sums;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Vec3 w = side == Side::kViewer ? samples.wo(i) : samples.wi(i);
+    const Vec3 w = side == Beam::kViewer ? samples.wo(i) : samples.wi(i);
     // A table has millions of directions: there the faster arc cosine is exact enough.
     const std::uint32_t key = measurement.isotropic
                                   ? static_cast<std::uint32_t>(std::lround(std::acos(std::min(1.0, w.z)) / resolution))

@@ -24,7 +24,7 @@ struct Incidences {
 //
 // By the side that the file lists (Measurement::listed_side), or by the one given.
 Incidences GroupByIncidence(const Measurement& measurement, double resolution = 0.1 * kPi / 180);
-Incidences GroupByDirection(const Measurement& measurement, Side side, double resolution = 0.1 * kPi / 180);
+Incidences GroupByDirection(const Measurement& measurement, Beam side, double resolution = 0.1 * kPi / 180);
 
 // The azimuth in (-pi/2, pi/2] of the plane through the normal that holds every sample (to 1e-6 rad); nothing where
 // there is none. Samples in one plane do not determine what is out of it.

@@ -55,7 +55,7 @@ struct Samples {
 };
 
 // A direction of a sample: the one to the light (wi) or the one to the viewer (wo).
-enum class Side { kLight, kViewer };
+enum class Beam { kLight, kViewer };
 
 struct Measurement {
   Channels channels;
@@ -65,7 +65,7 @@ struct Measurement {
   // isotropic model.
   bool isotropic = false;
   // The side whose directions were set one after the other while the other side swept: an incidence's samples share it.
-  Side listed_side = Side::kLight;
+  Beam listed_side = Beam::kLight;
   // Name of the format as in `lobefit info` ("merl", "rgl", "csv", ...), file name without folder, SHA-256 of the file.
   std::string format;
   std::string source;

@@ -154,7 +154,7 @@ Statistics Describe(const Measurement& measurement, const BrdfFunction& brdf) {
   statistics.channels = DescribeChannels(measurement.samples);
   statistics.largest_albedo = std::numeric_limits<double>::quiet_NaN();
   if (measurement.samples.size() == 0) return statistics;
-  const Incidences incidences = GroupByDirection(measurement, Side::kLight);
+  const Incidences incidences = GroupByDirection(measurement, Beam::kLight);
   if (!measurement.isotropic) statistics.azimuths_deg = AzimuthsOf(incidences);
   const Interpolator interpolator(measurement);
   DescribeReciprocity(measurement, interpolator, &statistics);

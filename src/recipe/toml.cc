@@ -266,7 +266,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
 }
 
 Recipe ReadRecipe(const std::filesystem::path& path) {
-  const MappedFile file(path);
+  const FileBytes file(path);
   return ParseRecipe(std::string(file.bytes()), path.string());
 }
 

@@ -13,17 +13,17 @@
 namespace lobefit {
 namespace {
 
-constexpr unsigned kSide = 4;
+constexpr unsigned kEdge = 4;
 // Pixels of a constant map may differ by one step of 8 bits, as an encoder may leave them.
 constexpr double kConstant = 1.01 * 2 / 255;
 
 template <class Value>
 std::string Encode(const std::array<Value, 3>& pixel, png_uint_32 format) {
   std::vector<Value> pixels;
-  for (unsigned i = 0; i < kSide * kSide; ++i) pixels.insert(pixels.end(), pixel.begin(), pixel.end());
+  for (unsigned i = 0; i < kEdge * kEdge; ++i) pixels.insert(pixels.end(), pixel.begin(), pixel.end());
   png_image image = {};
   image.version = PNG_IMAGE_VERSION;
-  image.width = image.height = kSide;
+  image.width = image.height = kEdge;
   image.format = format;
   png_alloc_size_t bytes = 0;
   std::string png;

@@ -62,7 +62,7 @@ std::filesystem::path WriteTruthBeside(const TruthRecord& record, const std::fil
 }
 
 std::optional<TruthRecord> FindTruth(const std::filesystem::path& measurement_path) {
-  const MappedFile file(measurement_path);
+  const FileBytes file(measurement_path);
   const std::string_view head = file.bytes().substr(0, 1U << 20U);
   const std::size_t key = head.find(kKey);
   if (key != std::string_view::npos) {
@@ -72,7 +72,7 @@ std::optional<TruthRecord> FindTruth(const std::filesystem::path& measurement_pa
   std::error_code error;
   const std::filesystem::path beside = PathBeside(measurement_path);
   if (!std::filesystem::exists(beside, error)) return std::nullopt;
-  const MappedFile document(beside);
+  const FileBytes document(beside);
   return Parse(document.bytes(), beside.string());
 }
 

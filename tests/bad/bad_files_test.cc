@@ -33,7 +33,7 @@ std::map<std::string, std::string> ExpectedMessages() {
   for (const Format& format : Formats()) {
     formats.push_back(std::string(format.name) + " (" + format.description + ")");
   }
-  const MappedFile file(kFolder / "messages.txt");
+  const FileBytes file(kFolder / "messages.txt");
   LineReader lines(file.bytes());
   std::string_view line;
   std::map<std::string, std::string> messages;
@@ -76,8 +76,9 @@ TEST(BadFiles, EachHasAMessage) {
 }
 
 TEST(BadFiles, FoldersMissingFilesAndDevicesAreRefused) {
-  EXPECT_EQ(MessageOf(kFolder / "files"), "is a folder; name a measurement file");
-  EXPECT_EQ(MessageOf("/dev/zero"), "is not a regular file; name a measurement file");
+  EXPECT_EQ(MessageOf(kFolder / "files"), "is a folder; name a file, a pipe or - for standard input");
+  EXPECT_EQ(MessageOf("/dev/zero"),
+            "holds more than 512 MB, the limit of a pipe; write it to a file, or give a part of it");
   EXPECT_EQ(MessageOf(kFolder / "no_such_file"),
             "cannot be opened: No such file or directory; check the name and the permissions");
 }

@@ -55,7 +55,7 @@ struct Table {
 };
 
 Table ReadTable(const std::string& name) {
-  const MappedFile file(test::SourceDir() / "tests/data/reference" / (std::string(name) + ".csv"));
+  const FileBytes file(test::SourceDir() / "tests/data/reference" / (std::string(name) + ".csv"));
   Table table;
   LineReader lines(file.bytes());
   std::string_view line;
@@ -325,7 +325,7 @@ std::map<std::string, std::array<double, 2>> FiguresOf(std::string_view text) {
 }
 
 int Compare(const std::string& path, const std::string& report) {
-  const MappedFile file(path);
+  const FileBytes file(path);
   const auto stated = FiguresOf(file.bytes());
   int failures = 0;
   for (const auto& [name, figures] : FiguresOf(report)) {

@@ -77,7 +77,7 @@ double BilinearAt(const double* grid, std::size_t height, std::size_t width, dou
 class TableReader {
  public:
   explicit TableReader(const std::filesystem::path& path, const char* values)
-      : tensors_(ReadTensors(MappedFile(path).bytes())), spectra_(tensors_.at(values)) {
+      : tensors_(ReadTensors(FileBytes(path).bytes())), spectra_(tensors_.at(values)) {
     const Tensor& vndf = tensors_.at("vndf");
     height_ = vndf.shape[2], width_ = vndf.shape[3];
     // Each slice integrates to 1 over the square, by the trapezoidal rule of a bilinear function.

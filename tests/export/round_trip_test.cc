@@ -88,7 +88,7 @@ TEST_P(RoundTrip, EachTargetStatesItsErrorAndWhatItLoses) {
     EXPECT_GT(result.bytes, 100U);
     // The text says where it comes from, at its top; JSON as the first member.
     if (name != "json") {
-      const MappedFile file(result.files[0]);
+      const FileBytes file(result.files[0]);
       const std::string top(file.bytes().substr(0, 1500));
       for (const char* words : {"exported by lobefit", "sample.csv", "log 0.0123", "command:"}) {
         EXPECT_NE(top.find(words), std::string::npos) << name << ": " << words;

@@ -52,10 +52,10 @@ TEST_F(SpectralExport, PbrtAndMitsubaHoldSpectra) {
     EXPECT_LT(result.error.lobe.median, 0.05) << target;
     EXPECT_LT(result.error.off.median, 0.05) << target;
   }
-  const MappedFile pbrt(folder_ / "sample.pbrt");
+  const FileBytes pbrt(folder_ / "sample.pbrt");
   EXPECT_THAT(std::string(pbrt.bytes()), HasSubstr("\"spectrum eta\" [360 "));
   EXPECT_THAT(std::string(pbrt.bytes()), HasSubstr("  830 "));
-  const MappedFile mitsuba(folder_ / "sample.mitsuba.xml");
+  const FileBytes mitsuba(folder_ / "sample.mitsuba.xml");
   EXPECT_THAT(std::string(mitsuba.bytes()), HasSubstr("<spectrum name=\"eta\" value=\"360:"));
 }
 

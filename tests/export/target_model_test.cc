@@ -99,7 +99,7 @@ class TargetModel : public testing::Test {
     options.numbers = Numbers::kCopied;
     ExportMaterial(test::MaterialOf(synthetic), options);
     path_ = folder_ / file;
-    return std::string(MappedFile(path_).bytes());
+    return std::string(FileBytes(path_).bytes());
   }
 
   void ExpectSame(const std::function<Rgb3(const Vec3&, const Vec3&)>& expected, double tolerance, double least_cos = 0,
@@ -131,7 +131,7 @@ TEST_F(TargetModel, Pbrt) {
   EXPECT_NE(text.find("\"bool remaproughness\" false"), std::string::npos);
   const double turn = DegreesToRadians(Find(text, "uv-rotation-deg: (\\S+)")[0]);
   const std::filesystem::path map = folder_ / "sample_normal1.png";
-  const Vec3 m = NormalOfPng(MappedFile(map).bytes(), 1, map);
+  const Vec3 m = NormalOfPng(FileBytes(map).bytes(), 1, map);
   const Vec3 n = {std::cos(turn) * m.x - std::sin(turn) * m.y, std::sin(turn) * m.x + std::cos(turn) * m.y, m.z};
   ExpectSame(
       [&](const Vec3& wi, const Vec3& wo) {

@@ -5,6 +5,8 @@
 
 #include "tests/io/csv/read_csv.h"
 
+#include "lobefit/base/file.h"
+
 namespace lobefit {
 namespace {
 

@@ -165,7 +165,7 @@ TEST(WriteTensorTree, RankAndBlocksThatRadianceReads) {
           values[1] = values[2] = green / kPi;
         },
         kThreeChannels, options, file.path());
-    return std::string(MappedFile(file.path()).bytes());
+    return std::string(FileBytes(file.path()).bytes());
   };
   EXPECT_NE(text(0.2, 0.1).find("TensorTree4"), std::string::npos);
   EXPECT_NE(text(0.002, 0.001).find("TensorTree3"), std::string::npos);

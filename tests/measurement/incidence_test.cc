@@ -82,9 +82,9 @@ TEST(GroupByIncidence, IsByTheSideThatTheFileLists) {
   std::swap(measurement.samples.wi_y, measurement.samples.wo_y);
   std::swap(measurement.samples.wi_z, measurement.samples.wo_z);
   EXPECT_GT(GroupByIncidence(measurement).wi.size(), 2U);
-  measurement.listed_side = Side::kViewer;
+  measurement.listed_side = Beam::kViewer;
   EXPECT_EQ(GroupByIncidence(measurement).wi.size(), 2U);
-  EXPECT_GT(GroupByDirection(measurement, Side::kLight).wi.size(), 2U);
+  EXPECT_GT(GroupByDirection(measurement, Beam::kLight).wi.size(), 2U);
 }
 
 }  // namespace

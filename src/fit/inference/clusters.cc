@@ -7,7 +7,6 @@
 namespace lobefit {
 namespace {
 
-constexpr double kAlone = 1e-9;
 constexpr std::size_t kMostExact = 100;
 // Numbers of 8 bytes that the exact degrees of freedom may store.
 constexpr double kMostStored = 4e6;

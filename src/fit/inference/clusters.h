@@ -9,6 +9,10 @@
 
 namespace lobefit {
 
+// A direction in which a sample's part of the curvature is this near to all of it has no residual but that sample's,
+// which is zero there.
+inline constexpr double kAlone = 1e-9;
+
 // Sums over the samples of one cluster, in whitened coordinates (bread.h).
 struct Cluster {
   Eigen::MatrixXd curvature;  // m x m: the cluster's part of the second derivatives, which add up to the unit matrix

@@ -15,9 +15,6 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
 
-// A direction in which a sample's part of the curvature is this near to all of it has no residual but that sample's,
-// which is zero there.
-constexpr double kAlone = 1e-9;
 // Bytes of the sums that are held at a time.
 constexpr double kMostBytes = 64e6;
 

@@ -9,8 +9,6 @@
 namespace lobefit {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 bool IsFinite(const Eigen::MatrixXd& jacobian, Eigen::Index row) { return jacobian.row(row).allFinite(); }
 
 }  // namespace

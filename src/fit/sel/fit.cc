@@ -80,7 +80,7 @@ void Describe(const Recipe& recipe, const Measurement& measurement, const std::v
       static_cast<double>(measurement.samples.size() * f_r.size()) / 2;
   DescribeEnd(nodes, &material->termination);
   material->remarks = measurement.remarks;
-  const std::size_t groups = GroupByDirection(measurement, Side::kLight).wi.size();
+  const std::size_t groups = GroupByDirection(measurement, Beam::kLight).wi.size();
   if (groups > nodes.size()) {
     material->remarks.push_back(
         fmt::format("{} of {} incident directions have fewer values than {} lobes have parameters and are left to "

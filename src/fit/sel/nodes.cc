@@ -62,7 +62,7 @@ SelSliceFit Refit(const std::vector<SelNode>& nodes, std::size_t k, const SelSli
 }  // namespace
 
 std::vector<SelNode> MakeSelNodes(const Measurement& measurement, const Recipe& recipe) {
-  const Incidences incidences = GroupByDirection(measurement, Side::kLight);
+  const Incidences incidences = GroupByDirection(measurement, Beam::kLight);
   const Samples& samples = measurement.samples;
   std::vector<std::vector<std::size_t>> members(incidences.wi.size());
   for (std::size_t i = 0; i < samples.size(); ++i) members[incidences.group[i]].push_back(i);

@@ -6,6 +6,8 @@
 namespace lobefit {
 namespace {
 
+using C = Coordinate;
+
 Vec3 Turned(const Vec3& w, double cos_angle, double sin_angle) {
   return {cos_angle * w.x - sin_angle * w.y, sin_angle * w.x + cos_angle * w.y, w.z};
 }
@@ -36,7 +38,6 @@ void DirectionReader::SetOffset(bool reversed, bool magnitude) {
 }
 
 std::string DirectionReader::Missing() const {
-  using C = Coordinate;
   if (Has(C::kThetaH)) return Has(C::kThetaD) ? "" : "the difference angle (theta_d) that goes with theta_h";
   if (Has(C::kWiX) || Has(C::kWoX)) {
     for (const C c : {C::kWiX, C::kWiY, C::kWiZ, C::kWoX, C::kWoY, C::kWoZ}) {
@@ -51,7 +52,6 @@ std::string DirectionReader::Missing() const {
 }
 
 std::string DirectionReader::Azimuths() const {
-  using C = Coordinate;
   if (Has(C::kThetaH)) return "half and difference angles";
   if (Has(C::kWiX)) return "";
   if (Has(C::kPhiO) || Has(C::kDeltaPhi)) return "";
@@ -63,7 +63,6 @@ std::string DirectionReader::Azimuths() const {
 }
 
 bool DirectionReader::IsIsotropic() const {
-  using C = Coordinate;
   if (Has(C::kSampleRotation)) return false;
   if (Has(C::kThetaH)) return !Has(C::kPhiH);
   return (Has(C::kDeltaPhi) || Has(C::kPhase)) && !Has(C::kPhiI) && !Has(C::kWiX);

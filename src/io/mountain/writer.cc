@@ -41,7 +41,7 @@ std::vector<std::filesystem::path> WriteMountain(const Measurement& measurement,
         "write it as csv, alta or rgl");
   }
   const Samples& samples = measurement.samples;
-  const Incidences incidences = GroupByDirection(measurement, Side::kLight);
+  const Incidences incidences = GroupByDirection(measurement, Beam::kLight);
   std::vector<std::filesystem::path> written;
   for (std::size_t group = 0; group < incidences.wi.size(); ++group) {
     const std::string theta = Rounded(RadiansToDegrees(PolarAngle(incidences.wi[group])));

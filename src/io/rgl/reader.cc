@@ -191,7 +191,7 @@ Measurement ReadRgl(const InputFile& file, const ReadOptions&) {
   if (measurement.samples.size() > 0) ScaleToMeanOne(&measurement.samples.solid_angle);
   measurement.isotropic = isotropic;
   measurement.conventions["rgl-table-direction"] = "viewer";
-  measurement.listed_side = Side::kViewer;
+  measurement.listed_side = Beam::kViewer;
   if (!tables.valid.empty()) {
     measurement.conventions["rgl-valid"] =
         valid_bit == 1 ? "set bits are reliable (recognised)" : "set bits are unreliable (recognised)";

@@ -27,7 +27,7 @@ class DecodedFile {
   void Unpack();
   void DecodeText();
 
-  MappedFile file_;
+  FileBytes file_;
   std::string decoded_;    // where the bytes had to be changed
   std::string_view rest_;  // else a part of the file
   std::vector<std::string> remarks_;

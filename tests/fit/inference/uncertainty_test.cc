@@ -7,11 +7,11 @@
 #include <tuple>
 #include <vector>
 
+#include "tests/fit/ceres_loss.h"
 #include "tests/support/jet_model.h"
 #include "tests/support/synthetic.h"
 #include <Eigen/Dense>
 #include <ceres/jet.h>
-#include <ceres/loss_function.h>
 #include <gtest/gtest.h>
 
 #include "lobefit/measurement/incidence.h"
@@ -42,20 +42,6 @@ Measurement SixtySamples() {
   }
   measurement.samples = measurement.samples.Subset(kept);
   return measurement;
-}
-
-std::unique_ptr<ceres::LossFunction> CeresLoss(Loss loss, double scale) {
-  switch (loss) {
-    case Loss::kHuber:
-      return std::make_unique<ceres::HuberLoss>(scale);
-    case Loss::kCauchy:
-      return std::make_unique<ceres::CauchyLoss>(scale);
-    case Loss::kTukey:
-      return std::make_unique<ceres::TukeyLoss>(scale);
-    case Loss::kNone:
-      break;
-  }
-  return std::make_unique<ceres::TrivialLoss>();
 }
 
 Matrix Power(const Matrix& symmetric, double power) {
@@ -169,7 +155,9 @@ TEST_P(EveryResidual, ErrorsAreTheTextbooks) {
   recipe.metric = metric;
   recipe.noise = {0.01, 0.05};
   recipe.loss = loss;
-  recipe.loss_scale = 0.1;
+  // Tukey's, five times as wide: with many samples on its flank, one incidence has more curvature than all together, and
+  // CR2 is not defined.
+  recipe.loss_scale = loss == Loss::kTukey ? 0.5 : 0.1;
   recipe.weighting = Weighting::kCells;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto x = static_cast<double>(i);
@@ -189,6 +177,8 @@ TEST_P(EveryResidual, ErrorsAreTheTextbooks) {
     u[8 + c] = 0.1 - 0.03 * static_cast<double>(c);
   }
   ThreadPool pool(2);
+  // At a minimum: elsewhere the second derivatives of a loss that flattens out may bend the cost down.
+  if (loss == Loss::kCauchy || loss == Loss::kTukey) u = Solve(problem, layout, u, {}, &pool).u;
   const Uncertainty got = EstimateUncertainty(problem, layout, u, incidences, &pool);
   const Matrix jacobian = layout.ReportJacobian(u.data());
   const Textbook expected = EvaluateTextbook(recipe, layout, samples, incidences, u, jacobian);

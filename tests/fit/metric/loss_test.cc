@@ -4,25 +4,11 @@
 #include <memory>
 #include <random>
 
-#include <ceres/loss_function.h>
+#include "tests/fit/ceres_loss.h"
 #include <gtest/gtest.h>
 
 namespace lobefit {
 namespace {
-
-std::unique_ptr<ceres::LossFunction> CeresLoss(Loss loss, double scale) {
-  switch (loss) {
-    case Loss::kHuber:
-      return std::make_unique<ceres::HuberLoss>(scale);
-    case Loss::kCauchy:
-      return std::make_unique<ceres::CauchyLoss>(scale);
-    case Loss::kTukey:
-      return std::make_unique<ceres::TukeyLoss>(scale);
-    case Loss::kNone:
-      break;
-  }
-  return std::make_unique<ceres::TrivialLoss>();
-}
 
 TEST(EvaluateLoss, IsCeresToTheSecondDerivative) {
   for (const Choice<Loss>& choice : LossChoices()) {

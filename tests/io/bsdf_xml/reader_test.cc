@@ -353,7 +353,9 @@ TEST(BsdfXml, HostileXmlIsRefusedOrHarmless) {
   std::string wide = "<WindowElement>";
   for (int i = 0; i < 1000001; ++i) wide += "<a/>";
   EXPECT_EQ(ErrorOf(ReadBsdfXml, wide + "</WindowElement>"),
-            "line 1: the file has more than 1000000 elements; a BSDF file has a few hundred, its numbers are text");
+            "line 1: the file has more than 1000000 elements or 2000000 attributes; real files have a few hundred, "
+            "their numbers "
+            "are text");
   // Entities are never expanded, inner or external.
   const std::string doctype =
       "<!DOCTYPE a [<!ENTITY x SYSTEM \"file:///etc/passwd\"><!ENTITY y \"Columns\">]>\n<WindowElement><Optical><Layer>"

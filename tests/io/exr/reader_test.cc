@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/io/exr/writer.h"
 #include "lobefit/io/read.h"
 #include "lobefit/io/text/options.h"
@@ -121,7 +122,7 @@ TEST(Exr, A288SquareWithoutAttributesIsUtia) {
 TEST(Exr, EveryCutIsRefused) {
   const TemporaryFile file;
   WriteExr(Rgb(TestBrdf()), kThreeChannels, ExrMap(), 24, 24, "", file.path());
-  const MappedFile mapped(file.path());
+  const FileBytes mapped(file.path());
   const std::string bytes(mapped.bytes());
   for (std::size_t length = 1; length + 1 < bytes.size(); length += 17) {
     EXPECT_THROW(ReadMeasurement(TemporaryFile(bytes.substr(0, length)).path()), InputError) << length;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/io/read.h"
 #include "lobefit/io/rgl/angles.h"
 #include "lobefit/io/rgl/brdf.h"
@@ -53,7 +54,7 @@ TEST(Rgl, ATiltedMaterialComesBackAsARendererSeesIt) {
   const TestBrdf brdf;
   const TemporaryFile file;
   WriteRgl(Rgb(brdf), kThreeChannels, {}, file.path());
-  const MappedFile mapped(file.path());
+  const FileBytes mapped(file.path());
   const Errors errors = ErrorsOf(RglBrdf(file.path(), mapped.bytes()), brdf);
   RecordProperty("median", std::to_string(errors.median));
   RecordProperty("percentile_90", std::to_string(errors.percentile_90));
@@ -132,7 +133,7 @@ TEST(Rgl, IsotropicFilesHaveOneAzimuth) {
   WriteRgl(Rgb(brdf), kThreeChannels, options, file.path());
   const Measurement m = ReadMeasurement(file.path());
   EXPECT_TRUE(m.isotropic);
-  const MappedFile mapped(file.path());
+  const FileBytes mapped(file.path());
   const Errors errors = ErrorsOf(RglBrdf(file.path(), mapped.bytes()), brdf);
   EXPECT_LT(errors.median, 0.004);
   EXPECT_LT(errors.percentile_90, 0.02);
@@ -140,7 +141,7 @@ TEST(Rgl, IsotropicFilesHaveOneAzimuth) {
 
 // The file with only its first `azimuths` azimuths.
 std::string Cut(const std::filesystem::path& path, std::uint64_t azimuths) {
-  const MappedFile mapped(path);
+  const FileBytes mapped(path);
   const TensorFile file(path, mapped.bytes());
   std::vector<TensorOutput> fields;
   for (const auto& [name, type, ndim] : {std::tuple{"phi_i", TensorType::kFloat32, 1},
@@ -167,7 +168,7 @@ std::string Cut(const std::filesystem::path& path, std::uint64_t azimuths) {
 // The file with other values in the first column of each slice, where the half vector is the normal: row r of 16 has
 // (0.5 + r / 15) times its value.
 std::string SpreadAtNormal(const std::filesystem::path& path) {
-  const MappedFile mapped(path);
+  const FileBytes mapped(path);
   std::string bytes(mapped.bytes());
   const TensorFile file(path, mapped.bytes());
   const TensorField& field = file.Get("rgb", TensorType::kFloat32, 5);
@@ -217,7 +218,7 @@ TEST(Rgl, GrazingViewersSeeNarrowLobes) {
   RglWriteOptions options;
   options.isotropic = true;
   WriteRgl(Rgb(brdf), kThreeChannels, options, file.path());
-  const MappedFile mapped(file.path());
+  const FileBytes mapped(file.path());
   const RglBrdf table(file.path(), mapped.bytes());
   for (const double theta_deg : {50.0, 75.0, 80.0, 84.0, 86.0}) {
     const Vec3 wo = FromSpherical(DegreesToRadians(theta_deg), 0.3);
@@ -248,7 +249,7 @@ TEST(Rgl, ReducedFilesStandForTheWholeCircle) {
   options.azimuths = 8;
   options.polar_angles = 12;
   WriteRgl(Rgb(brdf), kThreeChannels, options, file.path());
-  const MappedFile mapped(file.path());
+  const FileBytes mapped(file.path());
   const RglBrdf whole(file.path(), mapped.bytes());
   const Errors errors_whole = ErrorsOf(whole, brdf);
   for (const auto& [azimuths, reduction] : {std::pair<std::uint64_t, const char*>{5, "2"}, {3, "4"}}) {

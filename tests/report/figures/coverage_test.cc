@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/plot/canvas.h"
 
 namespace lobefit {
@@ -42,7 +43,7 @@ TEST(Coverage, WritesAPngAndRefusesNothing) {
   const Measurement measurement = test::Measure(test::MakeMaterial(1, false), test::GoniometerPairs(false), 0, false);
   const TemporaryFile file;
   WriteCoveragePng(measurement, file.path(), {.threads = 1, .scale = 1, .font_folders = {}});
-  EXPECT_TRUE(MappedFile(file.path()).bytes().starts_with("\x89PNG"));
+  EXPECT_TRUE(FileBytes(file.path()).bytes().starts_with("\x89PNG"));
   EXPECT_THROW(WriteCoveragePng(Measurement(), file.path()), InputError);
 }
 

@@ -132,7 +132,7 @@ TEST(WriteReportPng, WritesAPngOrNothing) {
   const Measurement measurement = test::Measure(material, test::GoniometerPairs(false), 0.02, false);
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "one.report.png";
   WriteReportPng(material, measurement, path, {.threads = 2, .scale = 1, .font_folders = {}});
-  EXPECT_EQ(MappedFile(path).bytes().substr(1, 3), "PNG");
+  EXPECT_EQ(FileBytes(path).bytes().substr(1, 3), "PNG");
   EXPECT_THROW(WriteReportPng(material, measurement, "/nonexistent/folder/x.png"), OutputError);
 }
 

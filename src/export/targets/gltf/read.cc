@@ -158,7 +158,7 @@ class GltfReader {
       return NormalOfPng(*png, scale, path_);
     }
     const std::filesystem::path file = path_.parent_path() / uri;
-    return NormalOfPng(MappedFile(file).bytes(), scale, file);
+    return NormalOfPng(FileBytes(file).bytes(), scale, file);
   }
 
   const std::filesystem::path& path_;

@@ -66,7 +66,7 @@ WrittenFiles WriteGltf(const FittedBrdf& fit, const WriteContext& context) {
   gltf["scene"] = 0;
   const std::filesystem::path path = context.File(".gltf");
   WriteFileAtomically(path, gltf.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-  const MappedFile bytes(path);
+  const FileBytes bytes(path);
   const ImportedMaterial back = ReadGltf({path, bytes.bytes()});
   WrittenFiles written = {{path}, InChannelsOf(fit, back.brdf), false, {}};
   if (material.roughness.anisotropy > 0) {

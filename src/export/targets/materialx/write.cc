@@ -77,7 +77,7 @@ WrittenFiles WriteMaterialX(const FittedBrdf& fit, const WriteContext& context) 
       id, sum);
   const std::filesystem::path path = context.File(".mtlx");
   WriteFileAtomically(path, MaterialXDocument(context, nodes));
-  const MappedFile bytes(path);
+  const FileBytes bytes(path);
   const ImportedMaterial back = ReadMaterialX({path, bytes.bytes()});
   return {{path}, InChannelsOf(fit, back.brdf), false, {}};
 }

@@ -17,7 +17,7 @@ std::string RefuseMerl(const FittedBrdf& fit) {
 WrittenFiles WriteMerlTable(const FittedBrdf& fit, const WriteContext& context) {
   const std::filesystem::path path = context.File(".binary");
   WriteMerl(fit.function(), fit.channels(), {}, path);
-  const MappedFile bytes(path);
+  const FileBytes bytes(path);
   const ImportedMaterial back = ReadMerlLookup({path, bytes.bytes()});
   return {{path}, InChannelsOf(fit, back.brdf), false, {"the error is that of a reader that takes the nearest cell"}};
 }

@@ -225,7 +225,7 @@ class MitsubaReader {
       }
     }
     const std::filesystem::path png = FindMap(file_.path, Named(texture, "filename").attribute("value").value());
-    return RotateZ(NormalOfPng(MappedFile(png).bytes(), 1, png), rotation_);
+    return RotateZ(NormalOfPng(FileBytes(png).bytes(), 1, png), rotation_);
   }
 
   void AddConductor(pugi::xml_node bsdf, double weight, const Vec3& normal, Surface* surface) const {

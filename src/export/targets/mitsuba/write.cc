@@ -103,7 +103,7 @@ WrittenFiles WriteMitsuba(const FittedBrdf& fit, const WriteContext& context) {
   WriteFileAtomically(path, XmlComment(header) + "<scene version=\"3.0.0\">\n" + Indented(xml, "  ") + "\n</scene>\n");
   WriteFileAtomically(python, PythonText(header, whole.python, !wavelengths.empty()));
   written.files.insert(written.files.begin(), {path, python});
-  const MappedFile bytes(path);
+  const FileBytes bytes(path);
   const ImportedMaterial back = ReadMitsuba({path, bytes.bytes()});
   written.brdf = wavelengths.empty() ? InChannelsOf(fit, back.brdf)
                                      : AtWavelengths(back.brdf, back.channels.wavelengths_nm, wavelengths);

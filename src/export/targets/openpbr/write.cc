@@ -51,7 +51,7 @@ WrittenFiles WriteOpenPbr(const FittedBrdf& fit, const WriteContext& context) {
           id);
   const std::filesystem::path path = context.File(".openpbr.mtlx");
   WriteFileAtomically(path, MaterialXDocument(context, nodes));
-  const MappedFile bytes(path);
+  const FileBytes bytes(path);
   const ImportedMaterial back = ReadMaterialX({path, bytes.bytes()});
   return {{path}, InChannelsOf(fit, back.brdf), false, {}};
 }

@@ -285,7 +285,7 @@ class PbrtReader {
   // pbrt looks beside the main scene; here that is the file's folder.
   Vec3 NormalOf(const Entry& entry) const {
     const std::filesystem::path png = FindMap(path_, entry.parameters.at("normalmap").words[0]);
-    return RotateZ(NormalOfPng(MappedFile(png).bytes(), 1, png), rotation_);
+    return RotateZ(NormalOfPng(FileBytes(png).bytes(), 1, png), rotation_);
   }
 
   const std::filesystem::path& path_;

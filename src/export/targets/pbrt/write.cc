@@ -129,7 +129,7 @@ WrittenFiles WritePbrt(const FittedBrdf& fit, const WriteContext& context) {
   const std::filesystem::path path = context.File(".pbrt");
   WriteFileAtomically(path, CommentLines(header, "#") + "\n" + text);
   written.files.insert(written.files.begin(), path);
-  const MappedFile bytes(path);
+  const FileBytes bytes(path);
   const ImportedMaterial back = ReadPbrt({path, bytes.bytes()});
   written.brdf = fit.IsRgbOrGrey()
                      ? InChannelsOf(fit, back.brdf)

@@ -84,7 +84,7 @@ ImportedMaterial ReadRglFile(const InputFile& file) {
 }
 
 ImportedMaterial ReadFile(const std::filesystem::path& path) {
-  const MappedFile file(path);
+  const FileBytes file(path);
   return ReadRglFile({path, file.bytes()});
 }
 
