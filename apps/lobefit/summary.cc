@@ -95,6 +95,20 @@ std::string Summary(const Material& material) {
         fmt::format("\nParameters (+- one standard error), metric {} on {}:\n", material.metric, material.weighting);
     AppendParameters(material, &text);
   }
+  if (!material.tried.empty()) {
+    text += "Models tried, error on incident directions held out:\n";
+    for (const TriedModel& model : material.tried) {
+      text += fmt::format("  {} {:<34} {:>3} parameters  {:.3g}  ({:.2f} of the first)\n", model.chosen ? '*' : ' ',
+                          model.name, model.free_parameters, model.held_out, model.ratio);
+    }
+  }
+  if (material.verdict) {
+    const Verdict& verdict = *material.verdict;
+    text += fmt::format("Verdict: {}. Typical error {:.2g} %", NameOf(VerdictChoices(), verdict.kind),
+                        100 * verdict.typical_error);
+    if (std::isfinite(verdict.noise)) text += fmt::format(", noise of the data {:.2g} %", 100 * verdict.noise);
+    text += verdict.advice.empty() ? "\n" : "; " + verdict.advice + '\n';
+  }
   text += "Root mean square error:";
   for (const MetricError& error : material.errors) {
     // A metric may weigh no sample at all: those that weigh by sin(theta_i) at normal incidence.

@@ -16,6 +16,7 @@
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 #include "lobefit/fit/fit.h"
+#include "lobefit/fit/ladder.h"
 #include "lobefit/fit/sel/sampling.h"
 #include "lobefit/io/series.h"
 #include "lobefit/material/json.h"
@@ -52,6 +53,13 @@ int Judge(const Material& material) {
         "lobefit: the measurement does not determine every parameter; the document names them; try a simpler recipe\n");
     return kExitFit;
   }
+  if (material.verdict && material.verdict->kind == VerdictKind::kDoesNotDescribe) {
+    std::fprintf(
+        stderr, "lobefit: the model does not describe the measurement: its typical error is %.0f %%; %s\n",
+        100 * material.verdict->typical_error,
+        material.verdict->advice.empty() ? "look at the values with `lobefit info`" : material.verdict->advice.c_str());
+    return kExitFit;
+  }
   return kExitDone;
 }
 
@@ -75,17 +83,25 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   FitOptions options = verb.fit;
   options.threads = common.Threads();
   verb.recipe.overrides().Remark(&measurement);
-  const Recipe recipe = verb.recipe.Choose(measurement);
+  Recipe recipe = verb.recipe.Choose(measurement);
   if (of_model && !recipe.sel) {
     throw UsageError(fmt::format(
         "{}: is a material, to which only lobes can be fitted; add --recipe sel, or give a measurement file",
         Excerpt(verb.files[0], 200)));
+  }
+  std::vector<TriedModel> tried;
+  if (verb.recipe.IsAutomatic()) {
+    LadderChoice choice = ClimbLadder(recipe, options, &measurement);
+    recipe = choice.recipe;
+    tried = std::move(choice.tried);
   }
   Material material = FitRecipe(recipe, options, &measurement);
   if (verb.recipe.IsAutomatic() && !verb.recipe.overrides().HasFreeScale()) {
     if (const std::optional<Recipe> alternative = AutomaticAlternative(recipe, material))
       material = Fit(*alternative, options, &measurement);
   }
+  material.tried = std::move(tried);
+  AddAdvice(&material);
   material.command = common.command;
   material.timings_s["read"] = read_s;
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
@@ -15,9 +16,11 @@
 #include "lobefit/fit/inference/noise_bias.h"
 #include "lobefit/fit/inference/rivals.h"
 #include "lobefit/fit/inference/uncertainty.h"
+#include "lobefit/fit/inference/verdict.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/prediction.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/profile_knots.h"
 #include "lobefit/fit/search/search.h"
 #include "lobefit/fit/sel/fit.h"
 #include "lobefit/math/directions.h"
@@ -113,9 +116,9 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
                       l == 0 ? "" : fmt::format("lobe{}.", l + 1), material);
     }
     const KernelModel kernel = layout.ToKernel(u.data());
-    const OffCenter off_center = OffCenterFromSlopeCoordinates(kernel.lobes[l].shape);
+    const OffCenter off_center = OffCenterFromSlopeCoordinates(kernel.lobes[l].shape.slope);
     const double ax = std::sqrt(off_center.q11), ay = std::sqrt(off_center.q22);
-    first_row += static_cast<Eigen::Index>(kShapeParameters +
+    first_row += static_cast<Eigen::Index>(ShapeParameters(recipe.model.lobes[l]) +
                                            FresnelParameters(recipe.model.lobes[l].fresnel) * layout.channels());
     material->slope_space.push_back({off_center.slope_x, off_center.slope_y, ax, ay, off_center.q12 / (ax * ay)});
   }
@@ -125,6 +128,38 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
       material->covariance.push_back(covariance(free_rows[a], free_rows[b]) * factors[a] * factors[b]);
       if (uncertainty.has_clusters)
         material->covariance_clustered.push_back(clustered(free_rows[a], free_rows[b]) * factors[a] * factors[b]);
+    }
+  }
+}
+
+// Coefficients of which the prior knows more than the samples: their posterior variance is more than half its own.
+void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, const std::vector<double>& u,
+                              ThreadPool* pool, Material* material) {
+  constexpr double kMostShare = 0.5;
+  const std::vector<Coordinate>& coordinates = layout.coordinates();
+  if (std::none_of(coordinates.begin(), coordinates.end(), [](const Coordinate& c) { return c.prior > 0; })) return;
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  const double cost = Linearise(problem, layout, u.data(), pool, &hessian, &gradient);
+  const double square = 2 * cost / static_cast<double>(problem.size() * problem.channels());
+  const Eigen::MatrixXd covariance = square * hessian.completeOrthogonalDecomposition().pseudoInverse();
+  const std::vector<Parameter> parameters = Parameters(material->model);
+  for (std::size_t l = 0; l < material->model.lobes.size(); ++l) {
+    const Lobe& lobe = material->model.lobes[l];
+    if (FamilyOf(lobe.ndf) != NdfFamily::kProfile) continue;
+    const std::size_t first = FirstParameter(material->model, l) + kEllipseParameters;
+    for (std::size_t k = 0; first + k < FirstFresnel(material->model, l); ++k) {
+      FittedParameter& fitted = material->parameters[first + k];
+      for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        if (coordinates[i].name != parameters[first + k].name) continue;
+        const auto at = static_cast<Eigen::Index>(i);
+        if (!(covariance(at, at) * coordinates[i].prior > kMostShare)) continue;
+        fitted.standard_error = fitted.standard_error_clustered = {kNan};
+        const double from = GridOf(lobe)->spline()->FirstRadius(k);
+        material->degenerate.push_back(fmt::format(
+            "{}: the density {} {:g} alphas is not determined by these samples; it is held near GGX's",
+            parameters[first + k].name, from > 0 ? "beyond" : "from the mean slope on, within", from > 0 ? from : 1.0));
+      }
     }
   }
 }
@@ -176,7 +211,9 @@ double CostOfBlack(const Problem& problem, KernelModel kernel, ThreadPool* pool)
     lobe.kind.fresnel = Fresnel::kNone;
     lobe.fresnel.assign(kernel.channels, 0.0);
   }
-  std::fill(kernel.diffuse.begin(), kernel.diffuse.end(), 0.0);
+  // The albedo is the last of a channel's diffuse parameters.
+  const std::size_t size = DiffuseParameters(kernel.diffuse_kind);
+  for (std::size_t k = size; k <= kernel.diffuse.size() && size > 0; k += size) kernel.diffuse[k - 1] = 0;
   return problem.Sum(kernel, false, pool).sum_rho / 2;
 }
 
@@ -228,6 +265,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   if (measurement->isotropic && !any_azimuth) spread = SpreadOverAzimuths(measurement->samples);
   const Samples& samples = spread.size() > 0 ? spread : measurement->samples;
   ThreadPool pool(std::max(1, options.threads));
+  recipe = WithKnots(recipe, samples, measurement->channels.names, options, &pool);
   const Incidences incidences = GroupByIncidence(*measurement);
   std::vector<std::string> remarks = measurement->remarks;
   const auto search_time = std::chrono::steady_clock::now();
@@ -283,6 +321,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   material.wavelengths_nm = measurement->channels.wavelengths_nm;
   material.degenerate = uncertainty.degenerate;
   Report(layout, best.u, uncertainty, &material);
+  FlagUndeterminedProfiles(problem, layout, best.u, &pool, &material);
   const bool has_rival = FlagRivals(problem, layout, samples, minima, &pool, &material);
   material.remarks = remarks;
   material.misfit = TestMisfit(problem, layout, best.u, samples, incidences);
@@ -313,6 +352,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         "would leave it; are these values of a sample?",
         100 * std::max(0.0, explained)));
   }
+  material.verdict = JudgeFit(problem, layout, best.u, explained, &pool);
   material.termination = {best.converged, uncertainty.determined() && !has_rival && !(explained < kLeastExplained),
                           best.message, best.iterations};
   material.source = {measurement->source, measurement->sha256, measurement->format, measurement->conventions};

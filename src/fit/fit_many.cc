@@ -77,7 +77,7 @@ std::vector<double> BestStart(const Samples& samples, const Layout& layout) {
   std::vector<double> weight = LinearisedWeights(samples, recipe.metric, recipe.noise);
   // Those are for f cos_theta_i.
   for (std::size_t i = 0; i < weight.size(); ++i) weight[i] *= samples.wi_z[i] * samples.wi_z[i];
-  std::vector<Ellipsoid> axes = {{1, 1, 0, 0, ndf == Ndf::kGgxTilted ? -recipe.plane_azimuth : 0.0}};
+  std::vector<Ellipsoid> axes = {{1, 1, 0, 0, IsInPlane(ndf) ? -recipe.plane_azimuth : 0.0}};
   if (IsTilted(ndf)) axes.push_back(PeakAxis(samples, ndf, recipe.plane_azimuth));
   std::vector<double> best, specular(samples.size()), cos_d(samples.size());
   LinearFit best_fit;
@@ -119,11 +119,15 @@ SmallFit DescendFrom(const Layout& layout, const std::vector<double>& start, con
 std::vector<SmallFit> FitMany(const Recipe& recipe, const std::vector<const Samples*>& samples,
                               const FitManyOptions& options) {
   const Model& model = recipe.model;
-  const bool linear = model.lobes.size() == 1 && model.diffuse != Diffuse::kMicrofacet &&
+  const NdfFamily family = model.lobes.empty() ? NdfFamily::kGgx : FamilyOf(model.lobes[0].ndf);
+  const bool linear = model.lobes.size() == 1 &&
+                      (model.diffuse == Diffuse::kLambert || model.diffuse == Diffuse::kNone) &&
+                      family != NdfFamily::kProfile && family != NdfFamily::kStudent &&
                       (model.lobes[0].fresnel == Fresnel::kSchlick || model.lobes[0].fresnel == Fresnel::kNone);
   if (!linear) {
     throw InputError("recipe '" + recipe.name +
-                     "': many small fits take one lobe with fresnel 'schlick' or 'none' and a Lambertian part or none; "
+                     "': many small fits take one lobe of an ellipse alone (ggx, beckmann and others) with fresnel "
+                     "'schlick' or 'none' and a Lambertian part or none; "
                      "fit the measurements one by one instead");
   }
   std::vector<SmallFit> fits(samples.size());

@@ -34,6 +34,8 @@ Json ModelToJson(const Model& model) {
                   {"masking", NameOf(MaskingChoices(), lobe.masking)},
                   {"fresnel", NameOf(FresnelChoices(), lobe.fresnel)}};
     if (!lobe.metal.empty()) entry["metal"] = lobe.metal;
+    if (lobe.direction != LobeDirection::kSpecular) entry["direction"] = NameOf(LobeDirectionChoices(), lobe.direction);
+    if (GridOf(lobe) != nullptr) entry["knots"] = GridOf(lobe)->spline()->knots();
     lobes.push_back(entry);
   }
   return {{"lobes", lobes}, {"diffuse", NameOf(DiffuseChoices(), model.diffuse)}};
@@ -93,6 +95,25 @@ Json QualityToJson(const Material& material) {
                   {"cost", Number(material.cost)},
                   {"errors", errors},
                   {"remarks", material.remarks}};
+  if (material.verdict) {
+    const Verdict& verdict = *material.verdict;
+    quality["verdict"] = NameOf(VerdictChoices(), verdict.kind);
+    quality["typical_error"] = Number(100 * verdict.typical_error);
+    quality["noise"] = Number(100 * verdict.noise);
+    quality["explained"] = Number(verdict.explained);
+    quality["advice"] = verdict.advice;
+  }
+  if (!material.tried.empty()) {
+    Json tried = Json::array();
+    for (const TriedModel& model : material.tried) {
+      tried.push_back({{"model", model.name},
+                       {"free_parameters", model.free_parameters},
+                       {"held_out_error", Number(model.held_out)},
+                       {"ratio", Number(model.ratio)},
+                       {"chosen", model.chosen}});
+    }
+    quality["tried"] = tried;
+  }
   if (material.misfit) {
     const Misfit& misfit = *material.misfit;
     quality["misfit"] = {{"tested", misfit.tested},
@@ -197,10 +218,18 @@ Model ReadModel(const Reader& reader) {
   const Json& json = reader.Member(reader.root(), "model");
   Model model;
   for (const Json& lobe : reader.Member(json, "lobes")) {
-    model.lobes.push_back({reader.GetChoice(lobe, "ndf", NdfChoices()),
-                           reader.GetChoice(lobe, "masking", MaskingChoices()),
-                           reader.GetChoice(lobe, "fresnel", FresnelChoices()),
-                           lobe.contains("metal") ? reader.Get<std::string>(lobe, "metal") : ""});
+    Lobe read = {reader.GetChoice(lobe, "ndf", NdfChoices()), reader.GetChoice(lobe, "masking", MaskingChoices()),
+                 reader.GetChoice(lobe, "fresnel", FresnelChoices()),
+                 lobe.contains("metal") ? reader.Get<std::string>(lobe, "metal") : ""};
+    if (lobe.contains("direction")) read.direction = reader.GetChoice(lobe, "direction", LobeDirectionChoices());
+    if (lobe.contains("knots")) {
+      try {
+        read.grid = GridWithKnots(reader.GetNumbers(lobe, "knots", 1));
+      } catch (const InputError& error) {
+        reader.Fail(error.what());
+      }
+    }
+    model.lobes.push_back(read);
   }
   model.diffuse = reader.GetChoice(json, "diffuse", DiffuseChoices());
   if (model.lobes.empty() && !reader.root().contains("sel")) reader.Fail("model has no lobe");
@@ -326,6 +355,20 @@ void ReadRest(const Reader& reader, Material* material) {
   material->set_aside = reader.Get<std::map<std::string, std::size_t>>(quality, "set_aside");
   material->cost = reader.Get<double>(quality, "cost");
   material->remarks = reader.Get<std::vector<std::string>>(quality, "remarks");
+  if (quality.contains("verdict")) {
+    material->verdict = {reader.GetChoice(quality, "verdict", VerdictChoices()),
+                         reader.GetNumbers(quality, "typical_error", 0.01)[0],
+                         reader.GetNumbers(quality, "noise", 0.01)[0], reader.GetNumbers(quality, "explained", 1)[0],
+                         reader.Get<std::string>(quality, "advice")};
+  }
+  if (quality.contains("tried")) {
+    for (const Json& entry : reader.Member(quality, "tried")) {
+      material->tried.push_back({reader.Get<std::string>(entry, "model"),
+                                 reader.Get<std::size_t>(entry, "free_parameters"),
+                                 reader.Get<double>(entry, "held_out_error"), reader.Get<double>(entry, "ratio"),
+                                 reader.Get<bool>(entry, "chosen")});
+    }
+  }
   if (quality.contains("misfit")) {
     const Json& misfit = reader.Member(quality, "misfit");
     material->misfit = {reader.Get<bool>(misfit, "tested"), reader.Get<bool>(misfit, "flagged"),

@@ -8,4 +8,14 @@ ParameterValues Material::Values() const {
   return values;
 }
 
+const std::vector<Choice<VerdictKind>>& VerdictChoices() {
+  static const std::vector<Choice<VerdictKind>> choices = {
+      {VerdictKind::kWithinNoise, "within-noise", "the model differs from the data by no more than their noise"},
+      {VerdictKind::kClose, "close", "the model is close to the data"},
+      {VerdictKind::kRough, "rough", "the model follows the data roughly"},
+      {VerdictKind::kDoesNotDescribe, "does-not-describe", "the model does not describe the data"},
+  };
+  return choices;
+}
+
 }  // namespace lobefit

@@ -58,6 +58,26 @@ struct Misfit {
   std::string where;       // that bin, in words
 };
 
+// How well the model describes the data, whatever the solver says; fit/verdict.h has the thresholds and why.
+enum class VerdictKind { kWithinNoise, kClose, kRough, kDoesNotDescribe };
+struct Verdict {
+  VerdictKind kind = VerdictKind::kClose;
+  double typical_error = 0;  // median |ln f / m| over values above the noise, as a relative error
+  double noise = 0;          // relative, of the data themselves; NaN where they do not tell
+  double explained = 0;      // share of the measurement's squares under the metric, less the model's
+  std::string advice;        // what to try next, in words; empty: nothing
+};
+const std::vector<Choice<VerdictKind>>& VerdictChoices();
+
+// A model of the automatic choice, judged on incident directions that it had not seen.
+struct TriedModel {
+  std::string name;
+  std::size_t free_parameters = 0;
+  double held_out = 0;  // root mean square under the metric
+  double ratio = 1;     // over that of the simplest model
+  bool chosen = false;
+};
+
 struct Source {
   std::string file, sha256, format;
   std::map<std::string, std::string> conventions;
@@ -81,7 +101,9 @@ struct Material {
   // Directions in parameter space that the data do not determine, in words.
   std::vector<std::string> degenerate;
   std::vector<std::string> remarks;
-  std::optional<Misfit> misfit;  // of fits of a model
+  std::optional<Misfit> misfit;    // of fits of a model
+  std::vector<TriedModel> tried;   // where the model was chosen automatically
+  std::optional<Verdict> verdict;  // of fits of a model
 
   std::size_t samples_used = 0, samples_read = 0;
   std::map<std::string, std::size_t> set_aside;

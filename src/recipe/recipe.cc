@@ -24,7 +24,10 @@ Recipe DefaultRecipe(const Model& model, const std::string& name) {
   Recipe recipe;
   recipe.name = name;
   recipe.model = model;
-  recipe.parameters.resize(Parameters(model).size());
+  for (const Parameter& parameter : Parameters(model)) {
+    recipe.parameters.emplace_back();
+    recipe.parameters.back().shared = parameter.shared;
+  }
   return recipe;
 }
 
@@ -41,7 +44,7 @@ Recipe WithMetals(const Recipe& recipe, const std::vector<double>& wavelengths_n
                       "[...] into the recipe, or leave `metal` out and let eta and k be fitted",
                       recipe.name, metal, wavelengths.size(), channels));
     }
-    const std::size_t first = FirstParameter(recipe.model, l) + kShapeParameters;
+    const std::size_t first = FirstFresnel(recipe.model, l);
     ParameterRecipe& eta = resolved.parameters[first];
     ParameterRecipe& k = resolved.parameters[first + 1];
     eta.fixed.clear();

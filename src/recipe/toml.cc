@@ -102,6 +102,7 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
   CheckKeys(table, {"start", "fixed", "bounds", "shared"}, "of parameter '" + name + "'", place);
   const double factor = InsideFactor(parameter);
   ParameterRecipe recipe;
+  recipe.shared = parameter.shared;
   recipe.start = Numbers(table, "start", parameter.per_channel, factor, place);
   recipe.fixed = Numbers(table, "fixed", parameter.per_channel, factor, place);
   if (const toml::node* bounds = table.get("bounds")) {
@@ -130,7 +131,7 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
   }
   if (!recipe.fixed.empty() && (!recipe.start.empty() || recipe.low))
     place.Fail(node.source(), fmt::format("'{}' is fixed: start and bounds do not apply", name));
-  if (!parameter.free && (!recipe.start.empty() || recipe.low || recipe.shared)) {
+  if (!parameter.free && (!recipe.start.empty() || recipe.low || recipe.shared != parameter.shared)) {
     place.Fail(node.source(), fmt::format("'{}' is not a free parameter of this ndf; it can only be fixed", name));
   }
   for (const std::vector<double>& values : {recipe.start, recipe.fixed}) {
@@ -146,11 +147,19 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
 }
 
 Lobe ReadLobe(const toml::table& table, const Place& place) {
-  CheckKeys(table, {"ndf", "masking", "fresnel", "metal"}, "of a lobe", place);
+  CheckKeys(table, {"ndf", "masking", "fresnel", "metal", "direction", "knots"}, "of a lobe", place);
   Lobe lobe;
   ReadChoice(table, "ndf", NdfChoices(), place, &lobe.ndf);
   ReadChoice(table, "masking", MaskingChoices(), place, &lobe.masking);
   ReadChoice(table, "fresnel", FresnelChoices(), place, &lobe.fresnel);
+  ReadChoice(table, "direction", LobeDirectionChoices(), place, &lobe.direction);
+  if (const toml::node* knots = table.get("knots")) {
+    try {
+      lobe.grid = GridWithKnots(Numbers(table, "knots", true, 1, place));
+    } catch (const InputError& error) {
+      place.Fail(knots->source(), error.what());
+    }
+  }
   if (const toml::node* metal = table.get("metal")) {
     std::vector<std::string> names;
     for (const MetalInfo& info : Metals()) {
@@ -300,6 +309,13 @@ std::string ToToml(const Recipe& recipe) {
         fmt::format("\n[[lobe]]\nndf = \"{}\"\nmasking = \"{}\"\nfresnel = \"{}\"\n", NameOf(NdfChoices(), lobe.ndf),
                     NameOf(MaskingChoices(), lobe.masking), NameOf(FresnelChoices(), lobe.fresnel));
     if (!lobe.metal.empty()) text += fmt::format("metal = \"{}\"\n", lobe.metal);
+    if (lobe.direction != LobeDirection::kSpecular)
+      text += fmt::format("direction = \"{}\"\n", NameOf(LobeDirectionChoices(), lobe.direction));
+    if (lobe.grid != nullptr) {
+      std::vector<std::string> knots;
+      for (const double r : lobe.grid->spline()->knots()) knots.push_back(FormatDouble(r));
+      text += "knots = [" + Join(knots) + "]\n";
+    }
   }
   text += "\n[parameters]\n";
   const std::vector<Parameter> parameters = Parameters(recipe.model);
@@ -317,7 +333,8 @@ std::string ToToml(const Recipe& recipe) {
     if (parameter.low)
       parts.push_back(fmt::format("bounds = [{}, {}]", FormatDouble(*parameter.low / factor),
                                   FormatDouble(*parameter.high / factor)));
-    if (parameter.shared) parts.emplace_back("shared = true");
+    if (parameter.shared != parameters[i].shared)
+      parts.emplace_back(parameter.shared ? "shared = true" : "shared = false");
     if (!parts.empty()) text += fmt::format("\"{}\" = {{ {} }}\n", parameters[i].json_name, Join(parts));
   }
   return text;

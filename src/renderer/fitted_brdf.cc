@@ -50,7 +50,7 @@ BrdfFunction FittedBrdf::function() const {
 
 double FittedBrdf::Fresnel(std::size_t lobe, std::size_t channel, double cos_d) const {
   const lobefit::Fresnel fresnel = lobes_[lobe].choices.fresnel;
-  const std::size_t first = FirstParameter(material_.model, lobe) + kShapeParameters;
+  const std::size_t first = FirstFresnel(material_.model, lobe);
   std::array<double, kMaxFresnelParameters> parameters = {};
   for (std::size_t k = 0; k < FresnelParameters(fresnel); ++k) {
     parameters[k] = material_.parameters[first + k].values[channel];

@@ -94,7 +94,7 @@ Material RgbFit(const FittedBrdf& fit, const ChannelMap& map) {
   }
   for (std::size_t l = 0; l < material.model.lobes.size(); ++l) {
     const Fresnel fresnel = material.model.lobes[l].fresnel;
-    FittedParameter* first = &material.parameters[FirstParameter(material.model, l) + kShapeParameters];
+    FittedParameter* first = &material.parameters[FirstFresnel(material.model, l)];
     if (fresnel == Fresnel::kConductor) {
       MapIndex(fit, map, l, first, first + 1);
       material.model.lobes[l].metal.clear();

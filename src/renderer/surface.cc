@@ -227,7 +227,7 @@ SurfaceFresnel ConductorFresnelOf(const FittedBrdf& fit, std::size_t lobe, doubl
   fresnel.kind = SurfaceFresnel::Kind::kConductor;
   const Material& material = fit.material();
   const bool own = fit.lobes()[lobe].choices.fresnel == Fresnel::kConductor && share == 1;
-  const std::size_t first = FirstParameter(material.model, lobe) + kShapeParameters;
+  const std::size_t first = FirstFresnel(material.model, lobe);
   fresnel.eta.resize(ChannelsOf(fit));
   fresnel.k.resize(ChannelsOf(fit));
   for (std::size_t c = 0; c < ChannelsOf(fit); ++c) {

@@ -28,6 +28,8 @@ SyntheticCase TruthOf(const Model& model) {
     } else {
       truth.values.insert(truth.values.end(), {{2 * alpha}, {alpha}, {theta_x}, {theta_y}, {0.4}});
     }
+    if (FamilyOf(ndf) == NdfFamily::kStudent) truth.values.push_back({2.8});
+    if (FamilyOf(ndf) == NdfFamily::kProfile) truth.values.insert(truth.values.end(), {{0.5}, {-0.4}, {0.3}});
     switch (model.lobes[l].fresnel) {
       case Fresnel::kSchlick:
         truth.values.push_back({0.5, 0.3});
@@ -38,11 +40,20 @@ SyntheticCase TruthOf(const Model& model) {
       case Fresnel::kDielectric:
         truth.values.push_back({1.5, 1.8});
         break;
+      case Fresnel::kSchlickF82:
+        truth.values.insert(truth.values.end(), {{0.5, 0.3}, {0.8, 0.9}});
+        break;
+      case Fresnel::kCurve:
+        truth.values.insert(truth.values.end(),
+                            {{0.9, 0.8}, {0.6, 0.5}, {0.3, 0.2}, {0.25, 0.1}, {0.3, 0.15}, {0.4, 0.2}});
+        break;
       case Fresnel::kNone:
         truth.values.push_back({0.8, 0.4});
         break;
     }
   }
+  if (model.diffuse == Diffuse::kInterfaced) truth.values.push_back({1.5, 1.5});
+  if (model.diffuse == Diffuse::kOrenNayar) truth.values.push_back({0.6, 0.6});
   if (model.diffuse != Diffuse::kNone) truth.values.push_back({0.2, 0.1});
   return truth;
 }
@@ -50,12 +61,18 @@ SyntheticCase TruthOf(const Model& model) {
 std::vector<Model> EveryChoice() {
   std::vector<Model> models;
   const auto add = [&](const Lobe& lobe, Diffuse diffuse) {
-    const Model model = {{lobe}, diffuse};
+    Model model = {{lobe}, diffuse};
+    if (FamilyOf(lobe.ndf) == NdfFamily::kProfile) model.lobes[0].grid = GridWithKnots({0, 1, 2, 4});
     if (WhyNotEvaluable(model).empty()) models.push_back(model);
   };
   for (const Choice<Ndf>& ndf : NdfChoices()) {
-    if (ndf.value != Ndf::kGgxTilted) add({ndf.value}, Diffuse::kLambert);  // in-plane data: fit_test.cc
+    if (!IsInPlane(ndf.value)) add({ndf.value}, Diffuse::kLambert);  // in-plane data: fit_test.cc
   }
+  Lobe retro = {Ndf::kGgxAnisotropic};
+  retro.direction = LobeDirection::kRetro;
+  add(retro, Diffuse::kLambert);
+  add({Ndf::kGgx}, Diffuse::kInterfaced);
+  add({Ndf::kGgx}, Diffuse::kOrenNayar);
   for (const Choice<Masking>& masking : MaskingChoices()) {
     add({Ndf::kGgx, masking.value}, Diffuse::kLambert);
     add({Ndf::kBeckmannOffCenter, masking.value}, Diffuse::kNone);

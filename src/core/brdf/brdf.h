@@ -5,8 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/diffuse_facets.h"
-#include "lobefit/core/brdf/ggx_lobe.h"
+#include "lobefit/core/brdf/lobe.h"
 #include "lobefit/core/brdf/model.h"
 
 namespace lobefit {
@@ -26,18 +27,24 @@ class Reflectance {
   // The same for arrays of directions, all above the horizon: f_r[c][i]. Same bits as Evaluate.
   void Evaluate(const DirectionArrays& directions, std::vector<std::vector<double>>* f_r) const;
 
-  const std::vector<SlopeCoordinates>& lobe_shapes() const { return shapes_; }
+  // One a lobe: the ellipses, and all of the shapes.
+  const std::vector<SlopeCoordinates>& lobe_shapes() const { return ellipses_; }
+  const std::vector<LobeShape>& shapes() const { return shapes_; }
 
  private:
-  // `diffuse`: the diffuse part of albedo 1.
+  // `diffuse`: f_r of the diffuse part.
   double Channel(std::size_t channel, const double* specular, const double* cos_d, double diffuse) const;
+  // `facets`: of albedo 1, where there are some.
+  double DiffusePart(std::size_t channel, const Vec3& wi, const Vec3& wo, double facets) const;
 
   Model model_;
   std::size_t channels_;
-  std::vector<SlopeCoordinates> shapes_;                   // one a lobe
+  std::vector<SlopeCoordinates> ellipses_;
+  std::vector<LobeShape> shapes_;
   std::vector<std::vector<std::vector<double>>> fresnel_;  // parameters, [lobe][channel]
-  std::vector<double> diffuse_;                            // albedo, [channel]; zero without a diffuse part
-  std::shared_ptr<const DiffuseFacets> facets_;            // null: Lambertian
+  std::vector<double> albedo_;                             // [channel]; zero without a diffuse part
+  std::vector<DirectionalDiffuse> directional_;            // [channel]; empty where the kind is none of these
+  std::shared_ptr<const DiffuseFacets> facets_;            // null: none
 };
 
 }  // namespace lobefit

@@ -22,19 +22,26 @@ double SingleLoss(double c) {
 
 double SingleScale(double roughness) { return 1.0 / (1.0 + kC1 * roughness); }
 
-}  // namespace
-
-double InterfacedDiffuse(double cos_i, double cos_o, double ior, double apparent, InterfacedGradient* gradient) {
-  double dTi_dc, dTi_dn, dTo_dc, dTo_dn, dF_ex;
+// With 1 - F_ex and dF_ex / dn.
+double Interfaced(double cos_i, double cos_o, double ior, double apparent, double enters, double dF_ex,
+                  InterfacedGradient* gradient) {
+  double dTi_dc, dTi_dn, dTo_dc, dTo_dn;
   const double T_i = DielectricTransmittance(cos_i, ior, &dTi_dc, &dTi_dn);
   const double T_o = DielectricTransmittance(cos_o, ior, &dTo_dc, &dTo_dn);
-  const double enters = 1.0 - DielectricMeanReflectance(ior, &dF_ex);
   const double unit = T_i * T_o * kInvPi / enters;
   if (gradient != nullptr) {
     const double f = apparent * unit;
     *gradient = {f * dTi_dc / T_i, f * dTo_dc / T_o, f * (dTi_dn / T_i + dTo_dn / T_o + dF_ex / enters), unit};
   }
   return apparent * unit;
+}
+
+}  // namespace
+
+double InterfacedDiffuse(double cos_i, double cos_o, double ior, double apparent, InterfacedGradient* gradient) {
+  double dF_ex;
+  const double enters = 1.0 - DielectricMeanReflectance(ior, &dF_ex);
+  return Interfaced(cos_i, cos_o, ior, apparent, enters, dF_ex, gradient);
 }
 
 double ApparentAlbedo(double rho, double ior, double* drho, double* dior) {
@@ -80,6 +87,28 @@ double OrenNayarAlbedo(double albedo, double roughness, double cos_theta) {
   const double X = albedo * albedo * E / (1.0 - albedo * (1.0 - E)),
                single = OrenNayarSingleAlbedo(roughness, cos_theta);
   return albedo * single + X * (1.0 - single);
+}
+
+bool IsDirectional(Diffuse kind) { return kind == Diffuse::kInterfaced || kind == Diffuse::kOrenNayar; }
+
+DirectionalDiffuse::DirectionalDiffuse(Diffuse kind, const double* parameters)
+    : kind_(kind), first_(parameters[0]), albedo_(parameters[1]) {
+  if (kind == Diffuse::kInterfaced) enters_ = 1.0 - DielectricMeanReflectance(first_, &dF_ex_);
+}
+
+double DirectionalDiffuse::Evaluate(const Vec3& wi, const Vec3& wo, double* gradient) const {
+  if (kind_ == Diffuse::kOrenNayar) {
+    const OrenNayar f = OrenNayarDiffuse(albedo_, first_, wi, wo);
+    if (gradient != nullptr) {
+      gradient[0] = f.dsingle_droughness + f.dmultiple_droughness;
+      gradient[1] = f.dsingle_dalbedo + f.dmultiple_dalbedo;
+    }
+    return f.single + f.multiple;
+  }
+  InterfacedGradient g;
+  const double value = Interfaced(wi.z, wo.z, first_, albedo_, enters_, dF_ex_, gradient != nullptr ? &g : nullptr);
+  if (gradient != nullptr) gradient[0] = g.dior, gradient[1] = g.dapparent;
+  return value;
 }
 
 }  // namespace lobefit

@@ -2,6 +2,7 @@
 // (Lambertian microfacets: diffuse_facets.h.) Angles of directions above the horizon; a null gradient is skipped.
 #pragma once
 
+#include "lobefit/core/brdf/model.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {
@@ -36,5 +37,21 @@ OrenNayar OrenNayarDiffuse(double albedo, double roughness, const Vec3& wi, cons
 double OrenNayarSingleAlbedo(double roughness, double cos_theta);
 // Directional albedo of the whole, seen from cos_theta.
 double OrenNayarAlbedo(double albedo, double roughness, double cos_theta);
+
+// The diffuse part of one channel, made ready for many samples: of the kinds that depend on the directions but not on a
+// lobe. `parameters` in the order of Parameters(model), its albedo the last.
+class DirectionalDiffuse {
+ public:
+  DirectionalDiffuse(Diffuse kind, const double* parameters);
+  // f_r, 1/sr; gradient by the parameters, null skips it.
+  double Evaluate(const Vec3& wi, const Vec3& wo, double* gradient) const;
+
+ private:
+  Diffuse kind_;
+  double first_, albedo_;  // index of the interface, or roughness
+  double enters_ = 1, dF_ex_ = 0;
+};
+// kInterfaced and kOrenNayar; the others are a constant, or belong to a lobe (diffuse_facets.h).
+bool IsDirectional(Diffuse kind);
 
 }  // namespace lobefit

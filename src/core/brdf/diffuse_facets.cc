@@ -14,7 +14,7 @@ constexpr double kBeckmannEnd = 6;  // exp(-36) is left out
 }  // namespace
 
 DiffuseFacets::DiffuseFacets(const Lobe& lobe, const SlopeCoordinates& shape)
-    : distribution_(DistributionOf(lobe.ndf, shape, jacobian_)),
+    : distribution_(DistributionOf(lobe, shape, &jacobian_)),
       shadowing_(ShadowingOf(lobe.masking, shape)),
       a_(std::exp(shape.v[2])),
       c_(std::exp(shape.v[4])) {

@@ -26,7 +26,7 @@ class DiffuseFacets {
   void Evaluate(const DirectionArrays& directions, double* value, double* gradient) const;
 
  private:
-  double jacobian_[5 * kMaxDistributionParameters] = {};  // before what its making fills it
+  std::vector<double> jacobian_;  // before what its making fills it
   std::unique_ptr<NormalDistribution> distribution_;
   Shadowing shadowing_;
   // Nodes: slopes, places in the unit disc, and weight / sqrt(1 + |s|^2).

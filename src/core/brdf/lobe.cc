@@ -3,30 +3,52 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lobefit/core/brdf/coat.h"
+#include "lobefit/core/brdf/radial_lobe.h"
 #include "lobefit/core/fresnel/fresnel.h"
 #include "lobefit/core/ndf/axial_distribution.h"
+#include "lobefit/core/ndf/shape_invariant.h"
+#include "lobefit/core/ndf/student.h"
 
 namespace lobefit {
 namespace {
 
-bool IsSimd(const Lobe& lobe) { return FamilyOf(lobe.ndf) == NdfFamily::kGgx && lobe.masking <= Masking::kSmithHeight; }
+bool IsFast(Masking masking) { return masking <= Masking::kSmithHeight; }
+bool IsGgx(const Lobe& lobe) { return FamilyOf(lobe.ndf) == NdfFamily::kGgx; }
+
+const std::shared_ptr<const ProfileGrid>& PowerLawGrid() {
+  static const auto grid =
+      std::make_shared<const ProfileGrid>(std::make_shared<const ProfileSpline>(ProfileSpline::PowerLaw()));
+  return grid;
+}
+
+// Student's ellipse as that of the power law whose density it is: all widths times sqrt(gamma - 1).
+SlopeCoordinates Widened(const SlopeCoordinates& slope, double gamma) {
+  const double log_scale = 0.5 * std::log(gamma - 1.0);
+  SlopeCoordinates wide = slope;
+  wide.v[2] += log_scale;
+  wide.v[3] *= std::exp(log_scale);
+  wide.v[4] += log_scale;
+  return wide;
+}
 
 // One lobe, made ready for many samples.
 class GeneralLobe {
  public:
-  GeneralLobe(const Lobe& lobe, const SlopeCoordinates& shape)
-      : distribution_(DistributionOf(lobe.ndf, shape, jacobian_)),
-        shadowing_(ShadowingOf(lobe.masking, shape)),
+  GeneralLobe(const Lobe& lobe, const LobeShape& shape)
+      : size_(ShapeParameters(lobe)),
+        distribution_(DistributionOf(lobe, shape, &jacobian_)),
+        shadowing_(ShadowingOf(lobe.masking, shape.slope)),
         schlick_(lobe.masking == Masking::kSchlickSmith) {}
 
-  double Evaluate(const Vec3& wi, const Vec3& wo, double* cos_d, double gradient[5]) const {
+  double Evaluate(const Vec3& wi, const Vec3& wo, double* cos_d, double* gradient) const {
     if (gradient == nullptr) return MicrofacetSpecular(*distribution_, shadowing_, wo, wi, nullptr, cos_d);
     double by_parameter[kMaxDistributionParameters];
     const double value = MicrofacetSpecular(*distribution_, shadowing_, wo, wi, by_parameter, cos_d);
-    for (std::size_t j = 0; j < 5; ++j) {
+    for (std::size_t j = 0; j < size_; ++j) {
       gradient[j] = 0;
       for (int k = 0; k < distribution_->parameters(); ++k)
-        gradient[j] += by_parameter[k] * jacobian_[5 * static_cast<std::size_t>(k) + j];
+        gradient[j] += by_parameter[k] * jacobian_[size_ * static_cast<std::size_t>(k) + j];
     }
     if (schlick_ && value > 0) {
       // microfacet.h holds m constant; here m = sqrt(a c).
@@ -41,13 +63,50 @@ class GeneralLobe {
   }
 
  private:
-  double jacobian_[5 * kMaxDistributionParameters] = {};
+  std::size_t size_;
+  std::vector<double> jacobian_;  // before what its making fills it
   std::unique_ptr<NormalDistribution> distribution_;
   Shadowing shadowing_;
   bool schlick_;
 };
 
+// A profile or Student's by its table; Student's is the power law's with its ellipse widened.
+void FastRadialLobe(const DirectionArrays& d, const Lobe& lobe, const LobeShape& shape, double* specular, double* cos_d,
+                    double* gradient) {
+  if (FamilyOf(lobe.ndf) == NdfFamily::kProfile)
+    return RadialLobe(d, shape.slope, *shape.masking, lobe.masking, specular, cos_d, gradient);
+  const double rest = shape.gamma - 1.0, scale = std::sqrt(rest);
+  const SlopeCoordinates wide = Widened(shape.slope, shape.gamma);
+  RadialLobe(d, wide, *shape.masking, lobe.masking, specular, cos_d, gradient);
+  const std::size_t n = d.count;
+  for (std::size_t i = 0; gradient != nullptr && i < n; ++i) {
+    double* g = gradient + i;
+    g[5 * n] += 0.5 * (g[2 * n] + wide.v[3] * g[3 * n] + g[4 * n]) / rest;
+    g[3 * n] *= scale;
+  }
+}
+
 }  // namespace
+
+LobeShape::LobeShape(const Lobe& lobe, const SlopeCoordinates& ellipse, const std::vector<double>& profile)
+    : slope(ellipse) {
+  const NdfFamily family = FamilyOf(lobe.ndf);
+  if (family == NdfFamily::kStudent) {
+    gamma = profile[0];
+    masking = std::make_shared<const ProfileMasking>(PowerLawGrid(),
+                                                     Profile(PowerLawGrid()->spline(), std::vector<double>{gamma - 2.0}));
+  }
+  if (family == NdfFamily::kProfile)
+    masking = std::make_shared<const ProfileMasking>(GridOf(lobe), Profile(GridOf(lobe)->spline(), profile));
+}
+
+LobeShape ShapeAt(const Lobe& lobe, const std::vector<double>* values) {
+  const SlopeCoordinates slope =
+      SlopeCoordinatesFromEllipsoid({values[0][0], values[1][0], values[2][0], values[3][0], values[4][0]});
+  std::vector<double> profile;
+  for (std::size_t k = kEllipseParameters; k < ShapeParameters(lobe); ++k) profile.push_back(values[k][0]);
+  return {lobe, slope, profile};
+}
 
 Shadowing ShadowingOf(Masking masking, const SlopeCoordinates& shape) {
   switch (masking) {
@@ -71,10 +130,15 @@ Shadowing ShadowingOf(Masking masking, const SlopeCoordinates& shape) {
   return {};
 }
 
-std::unique_ptr<NormalDistribution> DistributionOf(Ndf ndf, const SlopeCoordinates& shape, double* jacobian) {
-  const NdfFamily family = FamilyOf(ndf);
-  const double a = std::exp(shape.v[2]), b = shape.v[3], c = std::exp(shape.v[4]);
-  if (family == NdfFamily::kGgx || family == NdfFamily::kBeckmann) {
+std::unique_ptr<NormalDistribution> DistributionOf(const Lobe& lobe, const LobeShape& shape,
+                                                   std::vector<double>* jacobian) {
+  const NdfFamily family = FamilyOf(lobe.ndf);
+  const std::size_t size = ShapeParameters(lobe);
+  const SlopeCoordinates& s = shape.slope;
+  const double a = std::exp(s.v[2]), b = s.v[3], c = std::exp(s.v[4]);
+  const bool on_sphere = family == NdfFamily::kKagiwadaKalaba || family == NdfFamily::kSphericalGaussian;
+  if (jacobian != nullptr) jacobian->assign((on_sphere ? 1 : size) * size, 0.0);
+  if (!on_sphere) {
     const double alpha_y = std::hypot(b, c), r = b / alpha_y;
     if (jacobian != nullptr) {
       const double rows[kSlopeParameters][5] = {
@@ -84,37 +148,57 @@ std::unique_ptr<NormalDistribution> DistributionOf(Ndf ndf, const SlopeCoordinat
           {1, 0, 0, 0, 0},
           {0, 1, 0, 0, 0},
       };
-      std::copy(&rows[0][0], &rows[0][0] + 25, jacobian);
+      for (std::size_t k = 0; k < kSlopeParameters; ++k) std::copy(rows[k], rows[k] + 5, jacobian->data() + k * size);
+      for (std::size_t k = kSlopeParameters; k < size; ++k) (*jacobian)[k * size + k] = 1;
     }
-    const SlopeKind kind = family == NdfFamily::kGgx ? SlopeKind::kGgx : SlopeKind::kBeckmann;
-    return std::make_unique<SlopeNormalDistribution>(SlopeDistribution{kind, a, alpha_y, r, shape.v[0], shape.v[1]});
+    const SlopeKind kind = family == NdfFamily::kBeckmann ? SlopeKind::kBeckmann : SlopeKind::kGgx;
+    const SlopeDistribution slopes = {kind, a, alpha_y, r, s.v[0], s.v[1]};
+    if (family == NdfFamily::kProfile) return std::make_unique<ShapeInvariantDistribution>(shape.masking, slopes);
+    if (family == NdfFamily::kStudent) return std::make_unique<StudentDistribution>(shape.masking, slopes);
+    return std::make_unique<SlopeNormalDistribution>(slopes);
   }
   const bool gaussian = family == NdfFamily::kSphericalGaussian;
   const double kk = 1 / (1 + 0.5 * a * a);
-  if (jacobian != nullptr) {
-    std::fill(jacobian, jacobian + 5, 0.0);
-    jacobian[2] = gaussian ? a : -a * a * kk * kk;
-  }
+  if (jacobian != nullptr) (*jacobian)[2] = gaussian ? a : -a * a * kk * kk;
   return std::make_unique<AxialDistribution>(gaussian ? AxialNdf{AxialFamily::kSphericalGaussian, a}
                                                       : AxialNdf{AxialFamily::kKagiwadaKalaba, kk});
 }
 
-double SpecularLobe(const Vec3& wi, const Vec3& wo, const Lobe& lobe, const SlopeCoordinates& shape, double* cos_d,
-                    double gradient[5]) {
-  if (IsSimd(lobe)) return GgxLobe(wi, wo, shape, lobe.masking, cos_d, gradient);
-  return GeneralLobe(lobe, shape).Evaluate(wi, wo, cos_d, gradient);
+double SpecularLobe(const Vec3& wi, const Vec3& wo, const Lobe& lobe, const LobeShape& shape, double* cos_d,
+                    double* gradient) {
+  const Vec3 light = lobe.direction == LobeDirection::kRetro ? Mirrored(wi) : wi;
+  if (IsFast(lobe.masking) && IsGgx(lobe)) return GgxLobe(light, wo, shape.slope, lobe.masking, cos_d, gradient);
+  if (IsFast(lobe.masking) && shape.masking != nullptr) {
+    double specular;
+    FastRadialLobe({&light.x, &light.y, &light.z, &wo.x, &wo.y, &wo.z, 1}, lobe, shape, &specular, cos_d, gradient);
+    return specular;
+  }
+  return GeneralLobe(lobe, shape).Evaluate(light, wo, cos_d, gradient);
 }
 
-void SpecularLobe(const DirectionArrays& directions, const Lobe& lobe, const SlopeCoordinates& shape, double* specular,
+void SpecularLobe(const DirectionArrays& directions, const Lobe& lobe, const LobeShape& shape, double* specular,
                   double* cos_d, double* gradient) {
-  if (IsSimd(lobe)) return GgxLobe(directions, shape, lobe.masking, specular, cos_d, gradient);
+  DirectionArrays d = directions;
+  std::vector<double> mirrored_x, mirrored_y;
+  if (lobe.direction == LobeDirection::kRetro) {
+    for (std::size_t i = 0; i < d.count; ++i) {
+      const Vec3 light = Mirrored({d.wi_x[i], d.wi_y[i], d.wi_z[i]});
+      mirrored_x.push_back(light.x);
+      mirrored_y.push_back(light.y);
+    }
+    d.wi_x = mirrored_x.data();
+    d.wi_y = mirrored_y.data();
+  }
+  if (IsFast(lobe.masking) && IsGgx(lobe)) return GgxLobe(d, shape.slope, lobe.masking, specular, cos_d, gradient);
+  if (IsFast(lobe.masking) && shape.masking != nullptr)
+    return FastRadialLobe(d, lobe, shape, specular, cos_d, gradient);
   const GeneralLobe general(lobe, shape);
-  const DirectionArrays& d = directions;
+  std::vector<double> by_shape(ShapeParameters(lobe));
   for (std::size_t i = 0; i < d.count; ++i) {
-    double by_shape[5];
     specular[i] = general.Evaluate({d.wi_x[i], d.wi_y[i], d.wi_z[i]}, {d.wo_x[i], d.wo_y[i], d.wo_z[i]}, &cos_d[i],
-                                   gradient != nullptr ? by_shape : nullptr);
-    for (std::size_t j = 0; gradient != nullptr && j < 5; ++j) gradient[j * d.count + i] = by_shape[j];
+                                   gradient != nullptr ? by_shape.data() : nullptr);
+    for (std::size_t j = 0; gradient != nullptr && j < by_shape.size(); ++j)
+      gradient[j * d.count + i] = by_shape[j];
   }
 }
 
@@ -130,6 +214,20 @@ double FresnelFactor(Fresnel fresnel, const double* parameters, double cos_d, do
     }
     case Fresnel::kDielectric:
       return FresnelDielectric(cos_d, parameters[0], nullptr, dF);
+    case Fresnel::kSchlickF82: {
+      SchlickF82Gradient gradient = {};
+      const double value =
+          FresnelSchlickF82(cos_d, parameters[0], parameters[1], dF != nullptr ? &gradient : nullptr);
+      if (dF != nullptr) dF[0] = gradient.df0, dF[1] = gradient.dtint;
+      return value;
+    }
+    case Fresnel::kCurve: {
+      double basis[kFresnelCurveSize], value = 0;
+      FresnelCurveBasis(cos_d, basis);
+      for (std::size_t k = 0; k < kFresnelCurveSize; ++k) value += parameters[k] * basis[k];
+      if (dF != nullptr) std::copy(basis, basis + kFresnelCurveSize, dF);
+      return value;
+    }
     case Fresnel::kNone:
       break;
   }

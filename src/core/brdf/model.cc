@@ -25,7 +25,7 @@ constexpr ShapeRow kShapeRows[] = {
 struct NdfRow {
   NdfFamily family;
   bool round, tilted;
-  bool free[kShapeParameters];
+  bool free[kEllipseParameters];
 };
 // In the order of the enum.
 constexpr NdfRow kNdfs[] = {
@@ -38,11 +38,48 @@ constexpr NdfRow kNdfs[] = {
     {NdfFamily::kBeckmann, false, true, {true, true, true, true, true}},
     {NdfFamily::kKagiwadaKalaba, true, false, {true, false, false, false, false}},
     {NdfFamily::kSphericalGaussian, true, false, {true, false, false, false, false}},
+    {NdfFamily::kProfile, true, false, {true, false, false, false, false}},
+    {NdfFamily::kProfile, true, true, {true, false, false, true, false}},
+    {NdfFamily::kProfile, false, false, {true, true, false, false, true}},
+    {NdfFamily::kProfile, false, true, {true, true, true, true, true}},
+    {NdfFamily::kStudent, true, false, {true, false, false, false, false}},
+    {NdfFamily::kStudent, true, true, {true, false, false, true, false}},
+    {NdfFamily::kStudent, false, false, {true, true, false, false, true}},
+    {NdfFamily::kStudent, false, true, {true, true, true, true, true}},
 };
 const NdfRow& RowOf(Ndf ndf) { return kNdfs[static_cast<std::size_t>(ndf)]; }
 
 // Lobes on the whole sphere of normals have no axis that must be the longest: alpha = 10 is nearly isotropic.
 constexpr double kSphereAlphaHigh = 10;
+
+// What a lobe has beside its ellipse. Bounds: math.md 8.1, 8.2. q1 = -2 is a flat top; below, the density dips at the
+// centre. The last exponent must stay above 3/2, where the mean slope ends.
+struct ProfileRow {
+  std::string name;
+  double low, high, start;
+  std::string description;
+};
+std::vector<ProfileRow> ProfileRows(const Lobe& lobe) {
+  const NdfFamily family = FamilyOf(lobe.ndf);
+  if (family == NdfFamily::kStudent) {
+    return {{"gamma", 1.55, 100, 2, "exponent of the tail of the slopes: 2 is GGX, large is Beckmann"}};
+  }
+  std::vector<ProfileRow> rows;
+  if (family != NdfFamily::kProfile) return rows;
+  const std::vector<double>& knots = GridOf(lobe)->spline()->knots();
+  const std::size_t size = knots.size() - 1;
+  for (std::size_t k = 1; k <= size; ++k) {
+    const std::string name = "q" + std::to_string(k);
+    if (k == size && k > 1) {
+      rows.push_back({name, -0.45, 40, 0, "exponent of the tail less 2 (0 is GGX)"});
+    } else {
+      rows.push_back({name, k == 1 ? -2.0 : -3.0, k == 1 ? 10.0 : 40.0, 0,
+                      k == 1 ? "exponent at the peak less 2 (0 is GGX)"
+                             : "local exponent of the slopes' density less 2 (0 is GGX)"});
+    }
+  }
+  return rows;
+}
 
 struct FresnelRow {
   const char* name;
@@ -59,10 +96,33 @@ std::vector<FresnelRow> FresnelRows(Fresnel fresnel) {
               {"k", 0.001, 100, 3, "imaginary part of the refractive index"}};
     case Fresnel::kDielectric:
       return {{"ior", 1, 5, 1.5, "refractive index"}};
+    case Fresnel::kSchlickF82:
+      return {{"f0", 0, 1, 0, "reflectance at normal incidence"},
+              {"tint", 0, 1.2, 1, "factor of Schlick's reflectance at 82 degrees"}};
+    case Fresnel::kCurve:
+      return {{"F_0", 0, 1, 1, "reflectance at grazing incidence"},
+              {"F_1", 0, 1, 0.5, "coefficient of the reflectance, weightiest near 83 degrees"},
+              {"F_2", 0, 1, 0.1, "near 73 degrees"},
+              {"F_3", 0, 1, 0, "near 58 degrees"},
+              {"F_4", 0, 1, 0, "near 30 degrees"},
+              {"F_5", 0, 1, 0, "reflectance at normal incidence"}};
     case Fresnel::kNone:
       break;
   }
   return {{"scale", 0, 1e6, 0, "factor of the lobe in place of a Fresnel term"}};
+}
+
+const char* DiffuseAlbedoText(Diffuse diffuse) {
+  switch (diffuse) {
+    case Diffuse::kMicrofacet:
+      return "albedo of the facets of the first lobe";
+    case Diffuse::kInterfaced:
+      return "apparent albedo of the part below the interface, of what enters";
+    case Diffuse::kOrenNayar:
+      return "albedo of the facets of the diffuse part";
+    default:
+      return "albedo of the Lambertian part, pi f_r";
+  }
 }
 
 bool IsSmith(Masking masking) { return masking <= Masking::kSmithHeightDirection; }
@@ -72,12 +132,20 @@ bool IsSmith(Masking masking) { return masking <= Masking::kSmithHeightDirection
 NdfFamily FamilyOf(Ndf ndf) { return RowOf(ndf).family; }
 bool IsRound(Ndf ndf) { return RowOf(ndf).round; }
 bool IsTilted(Ndf ndf) { return RowOf(ndf).tilted; }
+bool IsInPlane(Ndf ndf) { return RowOf(ndf).round && RowOf(ndf).tilted; }
 
 std::string WhyNotEvaluable(const Model& model) {
   for (const Lobe& lobe : model.lobes) {
     if (lobe.masking == Masking::kVCavity && IsTilted(lobe.ndf)) {
       return std::string("masking v-cavity needs a lobe about the normal, ") + NameOf(NdfChoices(), lobe.ndf) +
              " may tilt; use ndf ggx-anisotropic or beckmann-anisotropic, or a Smith masking";
+    }
+    if (lobe.direction == LobeDirection::kRetro && IsTilted(lobe.ndf)) {
+      return std::string("direction retro needs a lobe about the normal, ") + NameOf(NdfChoices(), lobe.ndf) +
+             " may tilt, and would not be reciprocal; use ndf ggx, ggx-anisotropic or one of the others without a tilt";
+    }
+    if (lobe.grid != nullptr && FamilyOf(lobe.ndf) != NdfFamily::kProfile) {
+      return std::string("knots go with a profile only, not with ndf ") + NameOf(NdfChoices(), lobe.ndf);
     }
     if (!lobe.metal.empty() && lobe.fresnel != Fresnel::kConductor) {
       return "metal = '" + lobe.metal + "' goes with fresnel = 'conductor' only";
@@ -98,12 +166,55 @@ std::string WhyNotEvaluable(const Model& model) {
   return "";
 }
 
-std::size_t FresnelParameters(Fresnel fresnel) { return fresnel == Fresnel::kConductor ? 2 : 1; }
+std::size_t FresnelParameters(Fresnel fresnel) {
+  switch (fresnel) {
+    case Fresnel::kConductor:
+    case Fresnel::kSchlickF82:
+      return 2;
+    case Fresnel::kCurve:
+      return 6;
+    default:
+      return 1;
+  }
+}
+
+std::size_t ShapeParameters(const Lobe& lobe) {
+  switch (FamilyOf(lobe.ndf)) {
+    case NdfFamily::kStudent:
+      return kEllipseParameters + 1;
+    case NdfFamily::kProfile:
+      return kEllipseParameters + GridOf(lobe)->spline()->size();
+    default:
+      return kEllipseParameters;
+  }
+}
+
+std::size_t DiffuseParameters(Diffuse diffuse) {
+  if (diffuse == Diffuse::kNone) return 0;
+  return diffuse == Diffuse::kInterfaced || diffuse == Diffuse::kOrenNayar ? 2 : 1;
+}
 
 std::size_t FirstParameter(const Model& model, std::size_t lobe) {
   std::size_t first = 0;
-  for (std::size_t l = 0; l < lobe; ++l) first += kShapeParameters + FresnelParameters(model.lobes[l].fresnel);
+  for (std::size_t l = 0; l < lobe; ++l)
+    first += ShapeParameters(model.lobes[l]) + FresnelParameters(model.lobes[l].fresnel);
   return first;
+}
+
+std::size_t FirstFresnel(const Model& model, std::size_t lobe) {
+  return FirstParameter(model, lobe) + ShapeParameters(model.lobes[lobe]);
+}
+
+std::shared_ptr<const ProfileGrid> GridWithKnots(const std::vector<double>& knots) {
+  return std::make_shared<const ProfileGrid>(std::make_shared<const ProfileSpline>(knots));
+}
+
+const std::shared_ptr<const ProfileGrid>& GridOf(const Lobe& lobe) {
+  static const std::shared_ptr<const ProfileGrid> none;
+  if (FamilyOf(lobe.ndf) != NdfFamily::kProfile) return none;
+  if (lobe.grid != nullptr) return lobe.grid;
+  static const std::shared_ptr<const ProfileGrid> grid = GridWithKnots({0, 1, 2, 4, 8, 16, 32});
+  return grid;
 }
 
 std::vector<Parameter> Parameters(const Model& model) {
@@ -113,7 +224,7 @@ std::vector<Parameter> Parameters(const Model& model) {
     const std::string prefix = l == 0 ? "" : "lobe" + std::to_string(l + 1) + ".";
     const NdfFamily family = FamilyOf(lobe.ndf);
     const bool sphere = family == NdfFamily::kKagiwadaKalaba || family == NdfFamily::kSphericalGaussian;
-    for (std::size_t i = 0; i < kShapeParameters; ++i) {
+    for (std::size_t i = 0; i < kEllipseParameters; ++i) {
       const ShapeRow& row = kShapeRows[i];
       const bool is_angle = std::string_view(row.unit) == "deg";
       const std::string name = prefix + row.name;
@@ -121,16 +232,29 @@ std::vector<Parameter> Parameters(const Model& model) {
                             sphere && i < 2 ? kSphereAlphaHigh : row.high, ParameterGroup::kShape, false,
                             RowOf(lobe.ndf).free[i], row.description});
     }
+    for (const ProfileRow& row : ProfileRows(lobe)) {
+      const std::string name = prefix + row.name;
+      parameters.push_back(
+          {name, name, "1", row.low, row.high, ParameterGroup::kShape, false, true, row.description, row.start});
+    }
     for (const FresnelRow& row : FresnelRows(lobe.fresnel)) {
       const std::string name = prefix + row.name;
       parameters.push_back({name, name, "1", row.low, row.high, ParameterGroup::kFresnel, true, lobe.metal.empty(),
                             row.description, row.start});
     }
   }
+  if (model.diffuse == Diffuse::kInterfaced) {
+    // Not free: without samples at grazing it is the albedo over again.
+    parameters.push_back({"interface_ior", "interface_ior", "1", 1, 3, ParameterGroup::kDiffuse, true, false,
+                          "refractive index of the interface above the diffuse part", 1.5, true});
+  }
+  if (model.diffuse == Diffuse::kOrenNayar) {
+    parameters.push_back({"diffuse_roughness", "diffuse_roughness", "1", 0, 1, ParameterGroup::kDiffuse, true, true,
+                          "roughness of the diffuse part", 0.3, true});
+  }
   if (model.diffuse != Diffuse::kNone) {
-    parameters.push_back({"diffuse", "diffuse", "1", 0, 1, ParameterGroup::kDiffuse, true, true,
-                          model.diffuse == Diffuse::kLambert ? "albedo of the Lambertian part, pi f_r"
-                                                             : "albedo of the facets of the first lobe"});
+    parameters.push_back(
+        {"diffuse", "diffuse", "1", 0, 1, ParameterGroup::kDiffuse, true, true, DiffuseAlbedoText(model.diffuse)});
   }
   return parameters;
 }
@@ -148,6 +272,14 @@ const std::vector<Choice<Ndf>>& NdfChoices() {
       {Ndf::kBeckmannOffCenter, "beckmann-off-center", "anisotropic Beckmann, rotated and moved in slope space"},
       {Ndf::kKagiwadaKalaba, "kagiwada-kalaba", "Kagiwada-Kalaba on the sphere of normals, heavier tails than GGX"},
       {Ndf::kSphericalGaussian, "spherical-gaussian", "von Mises-Fisher on the sphere of normals"},
+      {Ndf::kProfile, "profile", "free radial profile of the slopes, isotropic"},
+      {Ndf::kProfileTilted, "profile-tilted", "free profile, tilted within the plane of the measurement"},
+      {Ndf::kProfileAnisotropic, "profile-anisotropic", "free profile, anisotropic, rotated about the normal"},
+      {Ndf::kProfileEllipsoid, "profile-ellipsoid", "free profile on the five-parameter ellipse: rotated and tilted"},
+      {Ndf::kStudent, "student", "Student's distribution of slopes, isotropic: one free exponent of the tail"},
+      {Ndf::kStudentTilted, "student-tilted", "Student's, tilted within the plane of the measurement"},
+      {Ndf::kStudentAnisotropic, "student-anisotropic", "Student's, anisotropic, rotated about the normal"},
+      {Ndf::kStudentEllipsoid, "student-ellipsoid", "Student's on the five-parameter ellipse: rotated and tilted"},
   };
   return choices;
 }
@@ -171,6 +303,8 @@ const std::vector<Choice<Fresnel>>& FresnelChoices() {
       {Fresnel::kSchlick, "schlick", "Schlick's approximation with f0 a channel"},
       {Fresnel::kConductor, "conductor", "exact, with eta and k a channel, or those of a metal"},
       {Fresnel::kDielectric, "dielectric", "exact, with a refractive index a channel"},
+      {Fresnel::kSchlickF82, "schlick-f82", "Schlick's with an edge tint, f0 and tint a channel"},
+      {Fresnel::kCurve, "curve", "a free curve over the angle, six coefficients a channel"},
       {Fresnel::kNone, "none", "no Fresnel term, a free scale a channel"},
   };
   return choices;
@@ -180,7 +314,17 @@ const std::vector<Choice<Diffuse>>& DiffuseChoices() {
   static const std::vector<Choice<Diffuse>> choices = {
       {Diffuse::kLambert, "lambert", "constant f_r"},
       {Diffuse::kMicrofacet, "microfacet", "the facets of the first lobe are Lambertian"},
+      {Diffuse::kInterfaced, "interfaced", "Lambertian below a smooth dielectric"},
+      {Diffuse::kOrenNayar, "oren-nayar", "rough, energy-preserving"},
       {Diffuse::kNone, "none", "no diffuse part"},
+  };
+  return choices;
+}
+
+const std::vector<Choice<LobeDirection>>& LobeDirectionChoices() {
+  static const std::vector<Choice<LobeDirection>> choices = {
+      {LobeDirection::kSpecular, "specular", "about the mirror direction"},
+      {LobeDirection::kRetro, "retro", "about the back direction; lobes about the normal"},
   };
   return choices;
 }

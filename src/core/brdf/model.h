@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "lobefit/base/choice.h"
+#include "lobefit/core/ndf/profile_masking.h"
 
 namespace lobefit {
 
@@ -23,12 +25,23 @@ enum class Ndf {
   // On the whole sphere of normals [dEon eq 26, 28]; one alpha.
   kKagiwadaKalaba,     // b = 1 / (1 + alpha^2 / 2), so that a narrow lobe falls to half at the angle alpha
   kSphericalGaussian,  // k = 2 / alpha^2, so that a narrow lobe is Beckmann's
+  // A free radial profile (profile.h) and Student's (student.h) on the ellipse in slope space, in GGX's four shapes.
+  // The five parameters name the ellipse, as for Beckmann; then gamma, or q1 .. qK.
+  kProfile,
+  kProfileTilted,
+  kProfileAnisotropic,
+  kProfileEllipsoid,
+  kStudent,
+  kStudentTilted,
+  kStudentAnisotropic,
+  kStudentEllipsoid,
 };
 
-enum class NdfFamily { kGgx, kBeckmann, kKagiwadaKalaba, kSphericalGaussian };
+enum class NdfFamily { kGgx, kBeckmann, kKagiwadaKalaba, kSphericalGaussian, kProfile, kStudent };
 NdfFamily FamilyOf(Ndf ndf);
-bool IsRound(Ndf ndf);   // alpha_y follows alpha_x
-bool IsTilted(Ndf ndf);  // the axis may leave the normal
+bool IsRound(Ndf ndf);    // alpha_y follows alpha_x
+bool IsTilted(Ndf ndf);   // the axis may leave the normal
+bool IsInPlane(Ndf ndf);  // round, and tilted within the plane of the measurement
 
 // Masking and shadowing for both directions, G2.
 enum class Masking {
@@ -47,13 +60,23 @@ enum class Fresnel {
   kSchlick,     // F = f0 + (1 - f0) (1 - cos_theta_d)^5, f0 a channel
   kConductor,   // exact, complex index eta + i k a channel
   kDielectric,  // exact, index ior a channel
+  kSchlickF82,  // Schlick with an edge tint, f0 and tint a channel
+  kCurve,       // cubic B-spline over cos_theta_d, six coefficients a channel
   kNone,        // a free scale a channel instead of F
 };
 
 enum class Diffuse {
   kLambert,
   kMicrofacet,  // the facets of the first lobe are Lambertian [Heitz eq 31]
+  kInterfaced,  // below a smooth dielectric (diffuse.h), by its apparent albedo
+  kOrenNayar,   // rough facets, energy-preserving
   kNone,
+};
+
+// About which direction a lobe lies.
+enum class LobeDirection {
+  kSpecular,
+  kRetro,  // the back direction: the lobe at (mirrored wi, wo), coat.h; lobes about the normal only
 };
 
 struct Lobe {
@@ -61,6 +84,9 @@ struct Lobe {
   Masking masking = Masking::kSmithSeparable;
   Fresnel fresnel = Fresnel::kSchlick;
   std::string metal = {};  // kConductor: eta and k are those of this metal (optical_constants.h), not fitted
+  LobeDirection direction = LobeDirection::kSpecular;
+  // Knots of a profile; null: those that the data reach (fit), else 0 1 2 4 8 16 32.
+  std::shared_ptr<const ProfileGrid> grid = nullptr;
 };
 
 struct Model {
@@ -87,17 +113,30 @@ struct Parameter {
   bool free = true;         // false: fixed or tied by the choice of NDF (shown, not fitted)
   std::string description;  // one line for people
   double start = 0;         // where a fit begins that knows nothing better
+  bool shared = false;      // per_channel, but one value for all channels unless a recipe says otherwise
 };
 
-// The parameters in their fixed order: for each lobe alpha_x, alpha_y, theta_x, theta_y, theta_z, then those of its
-// Fresnel term (f0; eta, k; ior; or scale); last the diffuse albedo.
+// The parameters in their fixed order: for each lobe alpha_x, alpha_y, theta_x, theta_y, theta_z and those of its
+// profile (gamma; or q1 .. qK), then those of its Fresnel term (f0; f0, tint; F_0 .. F_5; eta, k; ior; or scale); then
+// the diffuse part's (interface_ior; or diffuse_roughness), last its albedo.
 std::vector<Parameter> Parameters(const Model& model);
 
-inline constexpr std::size_t kShapeParameters = 5;
-inline constexpr std::size_t kMaxFresnelParameters = 2;
+inline constexpr std::size_t kEllipseParameters = 5;
+inline constexpr std::size_t kMaxFresnelParameters = 6;
 std::size_t FresnelParameters(Fresnel fresnel);
-// Index of a lobe's alpha_x in Parameters(model); lobe = model.lobes.size(): index of the diffuse albedo.
+// Those of the ellipse and of the profile.
+std::size_t ShapeParameters(const Lobe& lobe);
+// The diffuse part's, its albedo the last of them.
+std::size_t DiffuseParameters(Diffuse diffuse);
+// Index of a lobe's alpha_x in Parameters(model); lobe = model.lobes.size(): index of the diffuse part's first.
 std::size_t FirstParameter(const Model& model, std::size_t lobe);
+// Index of the first parameter of a lobe's Fresnel term.
+std::size_t FirstFresnel(const Model& model, std::size_t lobe);
+
+// Throws InputError as ProfileSpline does.
+std::shared_ptr<const ProfileGrid> GridWithKnots(const std::vector<double>& knots);
+// The knots' grid of a profile lobe; the default one where the lobe names none. Null for other families.
+const std::shared_ptr<const ProfileGrid>& GridOf(const Lobe& lobe);
 
 // inside value = outside value * factor.
 double InsideFactor(const Parameter& parameter);
@@ -110,5 +149,6 @@ const std::vector<Choice<Ndf>>& NdfChoices();
 const std::vector<Choice<Masking>>& MaskingChoices();
 const std::vector<Choice<Fresnel>>& FresnelChoices();
 const std::vector<Choice<Diffuse>>& DiffuseChoices();
+const std::vector<Choice<LobeDirection>>& LobeDirectionChoices();
 
 }  // namespace lobefit

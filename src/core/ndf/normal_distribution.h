@@ -7,7 +7,7 @@
 
 namespace lobefit {
 
-inline constexpr int kMaxDistributionParameters = 8;
+inline constexpr int kMaxDistributionParameters = 24;  // of a profile with 20 knots
 
 // A distribution of micro normals over one macro area: int D(m) (m.n) dm = 1, sigma(u) = int D(m) <m.u> dm. Immutable:
 // safe to share between threads. Gradients have parameters() entries; null skips them, the value is the same bits

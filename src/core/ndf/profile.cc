@@ -12,6 +12,7 @@
 namespace lobefit {
 namespace {
 
+constexpr std::size_t kMostKnots = 20;
 using Real = long double;  // the cubics are rounded once
 
 std::string Listed(const std::vector<double>& numbers) {
@@ -65,14 +66,14 @@ const QuadratureRule& MassRule() {
 
 ProfileSpline::ProfileSpline(std::vector<double> knots) : knots_(std::move(knots)) {
   std::size_t one = 0;
-  bool good = knots_.size() >= 2 && knots_[0] == 0;
+  bool good = knots_.size() >= 2 && knots_.size() <= kMostKnots && knots_[0] == 0;
   for (std::size_t i = 1; i < knots_.size(); ++i) {
     good = good && std::isfinite(knots_[i]) && knots_[i] > knots_[i - 1];
     if (knots_[i] == 1) one = i;
   }
   if (!good || one == 0) {
     throw InputError("the knots of a profile (" + Listed(knots_) +
-                     ") must increase, begin with 0 and contain 1, such as 0, 1, 2, 4, 8");
+                     ") must increase, begin with 0 and contain 1, at most 20, such as 0, 1, 2, 4, 8");
   }
   const std::size_t K = size_ = knots_.size() - 1;
   const std::vector<Real> u = LogKnots(knots_);

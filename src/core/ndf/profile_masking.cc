@@ -212,24 +212,31 @@ ProfileGrid::ProfileGrid(std::shared_ptr<const ProfileSpline> spline) : spline_(
   const QuadratureRule rule = GaussLegendre(kTablePoints);
   rules_.reserve(a_.size());
   for (const double a : a_) rules_.emplace_back(*spline_, a, rule);
+  stride_ = (spline_->size() + 2) / 2 * 2;
+  zero_ = Table(Profile(spline_, std::vector<double>(spline_->size(), 0.0)));
+}
+
+std::vector<double> ProfileGrid::Table(const Profile& profile) const {
+  std::vector<double> table(a_.size() * 3 * stride_, 0.0);
+  for (std::size_t i = 0; i < a_.size(); ++i) rules_[i].Apply(profile, true, table.data() + i * 3 * stride_, stride_);
+  return table;
 }
 
 ProfileMasking::ProfileMasking(std::shared_ptr<const ProfileGrid> grid, Profile profile)
-    : grid_(std::move(grid)), profile_(std::move(profile)), stride_((profile_.q().size() + 2) / 2 * 2) {
-  table_.assign(grid_->a_.size() * 3 * stride_, 0.0);
-  for (std::size_t i = 0; i < grid_->a_.size(); ++i)
-    grid_->rules_[i].Apply(profile_, true, table_.data() + i * 3 * stride_, stride_);
+    : grid_(std::move(grid)), profile_(std::move(profile)), stride_(grid_->stride_) {
+  const bool zero = std::all_of(profile_.q().begin(), profile_.q().end(), [](double q) { return q == 0; });
+  table_ = zero ? grid_->zero_ : grid_->Table(profile_);
 }
 
-double ProfileMasking::Difference(double a, double* derivative, double* by_q) const {
-  const std::size_t K = profile_.q().size();
+void ProfileMasking::Difference(double a, double* derivative, double* difference) const {
   const std::vector<double>& nodes = grid_->a_;
+  const std::size_t stride = stride_;
   if (!(a < nodes.back())) {
-    std::vector<double> moments(3 * stride_, 0.0);
-    if (std::isfinite(a)) ProfileRule(profile_.spline(), a, {}).Apply(profile_, true, moments.data(), stride_);
-    if (derivative != nullptr) *derivative = -moments[stride_];
-    if (by_q != nullptr) std::copy_n(moments.data() + 1, K, by_q);
-    return moments[0];
+    std::vector<double> moments(3 * stride, 0.0);
+    if (std::isfinite(a)) ProfileRule(profile_.spline(), a, {}).Apply(profile_, true, moments.data(), stride);
+    if (derivative != nullptr) *derivative = -moments[stride];
+    std::copy_n(moments.data(), stride, difference);
+    return;
   }
   const double position = std::log(a + std::sqrt(1.0 + a * a));  // asinh; its last bits do not matter
   const std::vector<ProfileGrid::Break>& breaks = grid_->breaks_;
@@ -240,25 +247,18 @@ double ProfileMasking::Difference(double a, double* derivative, double* by_q) co
   const double h = nodes[k0 + 1] - nodes[k0], x = (a - nodes[k0]) / h, y = 1.0 - x;
   // Quintic Hermite weights of value, -slope and curvature at both ends.
   const double xx = x * x, yy = y * y, x3 = xx * x, y3 = yy * y;
-  const double w[6] = {y3 * (1.0 + 3.0 * x + 6.0 * xx), -h * x * y3 * (1.0 + 3.0 * x), 0.5 * h * h * xx * y3,
-                       x3 * (1.0 + 3.0 * y + 6.0 * yy), h * y * x3 * (1.0 + 3.0 * y),  0.5 * h * h * yy * x3};
-  const double* p = table_.data() + k0 * 3 * stride_;
+  const double* p0 = table_.data() + k0 * 3 * stride;
+  const double *p1 = p0 + stride, *p2 = p1 + stride, *p3 = p2 + stride, *p4 = p3 + stride, *p5 = p4 + stride;
   if (derivative != nullptr) {
     const double in_m = 30.0 * xx * yy / h;
-    const double d[6] = {-in_m, -yy * (1.0 + 2.0 * x - 15.0 * xx), 0.5 * h * x * yy * (2.0 - 5.0 * x),
-                         in_m,  -xx * (1.0 + 2.0 * y - 15.0 * yy), -0.5 * h * y * xx * (2.0 - 5.0 * y)};
-    double sum = 0;
-    for (std::size_t j = 0; j < 6; ++j) sum += d[j] * p[j * stride_];
-    *derivative = sum;
+    *derivative = in_m * (*p3 - *p0) - yy * (1.0 + 2.0 * x - 15.0 * xx) * *p1 - xx * (1.0 + 2.0 * y - 15.0 * yy) * *p4 +
+                  0.5 * h * x * y * (y * (2.0 - 5.0 * x) * *p2 - x * (2.0 - 5.0 * y) * *p5);
   }
-  double value = 0;
-  for (std::size_t j = 0; j < 6; ++j) value += w[j] * p[j * stride_];
-  for (std::size_t k = 0; by_q != nullptr && k < K; ++k) {
-    double sum = 0;
-    for (std::size_t j = 0; j < 6; ++j) sum += w[j] * p[j * stride_ + 1 + k];
-    by_q[k] = sum;
-  }
-  return value;
+  const double w0 = y3 * (1.0 + 3.0 * x + 6.0 * xx), w1 = -h * x * y3 * (1.0 + 3.0 * x), w2 = 0.5 * h * h * xx * y3;
+  const double w3 = x3 * (1.0 + 3.0 * y + 6.0 * yy), w4 = h * y * x3 * (1.0 + 3.0 * y), w5 = 0.5 * h * h * yy * x3;
+  // Across the columns, which lie side by side: the compiler makes vectors of them.
+  for (std::size_t k = 0; k < stride; ++k)
+    difference[k] = w0 * p0[k] + w1 * p1[k] + w2 * p2[k] + w3 * p3[k] + w4 * p4[k] + w5 * p5[k];
 }
 
 }  // namespace lobefit

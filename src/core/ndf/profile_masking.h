@@ -48,6 +48,8 @@ class ProfileGrid {
 
  private:
   friend class ProfileMasking;
+  std::vector<double> Table(const Profile& profile) const;
+
   std::shared_ptr<const ProfileSpline> spline_;
   // Nodes are evenly spaced in asinh(a) from one break to the next.
   struct Break {
@@ -55,7 +57,9 @@ class ProfileGrid {
     std::size_t first, steps;
   };
   std::vector<Break> breaks_;
-  std::vector<double> a_;  // of the nodes
+  std::vector<double> a_;     // of the nodes
+  std::size_t stride_;        // numbers of a row of a table
+  std::vector<double> zero_;  // the table of coefficients 0, where fits begin
   std::vector<ProfileRule> rules_;
 };
 
@@ -68,8 +72,10 @@ class ProfileMasking {
 
   const Profile& profile() const { return profile_; }
 
-  // M(a) less GGX's, its derivative in a and, where asked, those by q; any a >= 0, infinity included.
-  double Difference(double a, double* derivative, double* by_q) const;
+  // difference[0]: M(a) less GGX's; then its derivatives by q, padded to stride() numbers. `derivative`: in a, null
+  // skips it. Any a >= 0, infinity included.
+  void Difference(double a, double* derivative, double* difference) const;
+  std::size_t stride() const { return stride_; }
 
  private:
   std::shared_ptr<const ProfileGrid> grid_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "lobefit/core/ndf/off_center.h"
 #include "lobefit/core/ndf/smith.h"
@@ -28,20 +29,21 @@ double ShapeInvariantDistribution::Sigma(const Vec3& u, double* gradient) const 
   const double ggx = SmithSigma(slopes_, u, gradient);
   double dc[kSlopeParameters], dq[kSlopeParameters];
   const ProjectedSlopes p = ProjectSlopes(slopes_, u, dc, dq);
-  double* by_q = gradient != nullptr ? gradient + kSlopeParameters : nullptr;
+  const std::size_t K = masking_->profile().q().size();
   if (!(p.q > 0)) {
-    if (by_q != nullptr) std::fill_n(by_q, masking_->profile().q().size(), 0.0);
+    if (gradient != nullptr) std::fill_n(gradient + kSlopeParameters, K, 0.0);
     return ggx;
   }
   const double root = std::sqrt(p.q), a = std::abs(p.a);
+  std::vector<double> difference(masking_->stride());
   double slope;
-  const double difference = masking_->Difference(a, &slope, by_q);
+  masking_->Difference(a, &slope, difference.data());
   if (gradient != nullptr) {
-    const double in_c = p.a > 0 ? slope : -slope, in_q = 0.5 * (difference - a * slope) / root;
+    const double in_c = p.a > 0 ? slope : -slope, in_q = 0.5 * (difference[0] - a * slope) / root;
     for (int k = 0; k < kSlopeParameters; ++k) gradient[k] += in_c * dc[k] + in_q * dq[k];
-    for (std::size_t k = 0; k < masking_->profile().q().size(); ++k) by_q[k] *= root;
+    for (std::size_t k = 0; k < K; ++k) gradient[kSlopeParameters + k] = root * difference[1 + k];
   }
-  return ggx + root * difference;
+  return ggx + root * difference[0];
 }
 
 }  // namespace lobefit

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
@@ -53,13 +52,11 @@ double StudentD(double gamma, const SlopeDistribution& slopes, const Vec3& wm, d
   return value;
 }
 
-StudentDistribution::StudentDistribution(const std::shared_ptr<const ProfileGrid>& grid, double gamma,
+StudentDistribution::StudentDistribution(const std::shared_ptr<const ProfileMasking>& power_law,
                                          const SlopeDistribution& slopes)
-    : gamma_(gamma),
+    : gamma_(2.0 + power_law->profile().q()[0]),
       slopes_(slopes),
-      power_law_(
-          std::make_shared<const ProfileMasking>(grid, Profile(grid->spline(), std::vector<double>{gamma - 2.0})),
-          PowerLawSlopes(gamma, slopes)) {}
+      power_law_(power_law, PowerLawSlopes(gamma_, slopes)) {}
 
 double StudentDistribution::Sigma(const Vec3& u, double* gradient) const {
   const double value = power_law_.Sigma(u, gradient);

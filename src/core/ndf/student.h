@@ -19,10 +19,10 @@ SlopeDistribution PowerLawSlopes(double gamma, const SlopeDistribution& slopes);
 // D(wm), 1/sr; 0 for wm.z <= 0. Gradient by alpha_x, alpha_y, r, slope_x, slope_y, gamma. `slopes.kind` is not read.
 double StudentD(double gamma, const SlopeDistribution& slopes, const Vec3& wm, double* gradient = nullptr);
 
-// Parameters as those of StudentD. `grid` is one of ProfileSpline::PowerLaw().
+// Parameters as those of StudentD. `power_law`: of ProfileSpline::PowerLaw(), q_1 = gamma - 2.
 class StudentDistribution final : public NormalDistribution {
  public:
-  StudentDistribution(const std::shared_ptr<const ProfileGrid>& grid, double gamma, const SlopeDistribution& slopes);
+  StudentDistribution(const std::shared_ptr<const ProfileMasking>& power_law, const SlopeDistribution& slopes);
   using NormalDistribution::D;
   using NormalDistribution::Sigma;
   int parameters() const override { return kSlopeParameters + 1; }

@@ -53,7 +53,8 @@ std::vector<Carried> CarriesLobes(const FittedBrdf& fit, Masking masking, const 
   const bool same = std::all_of(fit.lobes().begin(), fit.lobes().end(),
                                 [&](const FittedLobe& lobe) { return lobe.choices.masking == masking; });
   if (!same || masking == Masking::kImplicit) Mark(&rows, Feature::kMasking, Carries::kApproximately, own_masking);
-  if (fit.material().model.diffuse == Diffuse::kMicrofacet) {
+  const Diffuse diffuse = fit.material().model.diffuse;
+  if (diffuse != Diffuse::kLambert && diffuse != Diffuse::kNone) {
     Mark(&rows, Feature::kDiffuse, Carries::kApproximately, "as a Lambertian part of the same albedo");
   }
   return rows;
@@ -108,23 +109,34 @@ Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes) {
                       lobe.anisotropic != IsRound(lobe.choices.ndf);
     model.lobes.push_back({kept ? lobe.choices.ndf : ndf, masking, Fresnel::kSchlick, ""});
   }
-  if (model.diffuse == Diffuse::kMicrofacet) model.diffuse = Diffuse::kLambert;
+  if (model.diffuse != Diffuse::kNone) model.diffuse = Diffuse::kLambert;
   return model;
 }
 
 std::string RefuseNoLobe(const FittedBrdf& fit) {
-  return fit.lobes().empty() ? "it needs a specular lobe, and the fit has none" : "";
+  if (fit.lobes().empty()) return "it needs a specular lobe, and the fit has none";
+  const bool retro = std::any_of(fit.lobes().begin(), fit.lobes().end(), [](const FittedLobe& lobe) {
+    return lobe.choices.direction == LobeDirection::kRetro;
+  });
+  return retro ? "it has no lobe about the back direction" : "";
 }
 
 std::string RefuseUnknownTerms(const FittedBrdf& fit) {
   for (const FittedLobe& lobe : fit.lobes()) {
     const NdfFamily family = FamilyOf(lobe.choices.ndf);
+    if (lobe.choices.direction == LobeDirection::kRetro) return "its shader text has no lobe about the back direction";
+    if (lobe.choices.fresnel == Fresnel::kSchlickF82 || lobe.choices.fresnel == Fresnel::kCurve) {
+      return fmt::format("its shader text does not know the Fresnel term '{}'",
+                         NameOf(FresnelChoices(), lobe.choices.fresnel));
+    }
     if (family == NdfFamily::kGgx || family == NdfFamily::kBeckmann) continue;
     return fmt::format("its shader text knows GGX and Beckmann distributions, not '{}'",
                        NameOf(NdfChoices(), lobe.choices.ndf));
   }
-  if (fit.material().model.diffuse == Diffuse::kMicrofacet) {
-    return "its shader text knows Lambertian diffuse parts only, not microfacet ones";
+  const Diffuse diffuse = fit.material().model.diffuse;
+  if (diffuse != Diffuse::kLambert && diffuse != Diffuse::kNone) {
+    return fmt::format("its shader text knows Lambertian diffuse parts only, not '{}'",
+                       NameOf(DiffuseChoices(), diffuse));
   }
   return "";
 }

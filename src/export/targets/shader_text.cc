@@ -37,7 +37,7 @@ std::string FresnelOf(const FittedBrdf& fit, std::size_t lobe, std::size_t chann
   const Fresnel fresnel = material.model.lobes[lobe].fresnel;
   std::vector<std::string> parameters;
   for (std::size_t k = 0; k < FresnelParameters(fresnel); ++k) {
-    const std::size_t index = FirstParameter(material.model, lobe) + kShapeParameters + k;
+    const std::size_t index = FirstFresnel(material.model, lobe) + k;
     parameters.push_back(FloatLiteral(material.parameters[index].values[channel]));
   }
   return ShaderFresnel(fresnel, parameters);
@@ -84,6 +84,8 @@ std::string ShaderFresnel(Fresnel fresnel, const std::vector<std::string>& param
       return fmt::format("lobefit_conductor(cos_d, {}, {})", parameters[0], parameters[1]);
     case Fresnel::kDielectric:
       return fmt::format("lobefit_dielectric(cos_d, {})", parameters[0]);
+    case Fresnel::kSchlickF82:
+    case Fresnel::kCurve:  // refused before (RefuseUnknownTerms)
     case Fresnel::kNone:
       break;
   }

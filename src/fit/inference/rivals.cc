@@ -86,6 +86,7 @@ std::vector<double> MirrorImage(const Layout& layout, const std::vector<double>&
     shapes.push_back(Mirrored({p[0][0], p[1][0], p[2][0], p[3][0], p[4][0]}, azimuth));
   }
   std::vector<double> image = layout.FromShapes(shapes);
+  layout.CopyProfiles(u, &image);
   std::copy(u.begin() + static_cast<std::ptrdiff_t>(layout.shape_size()), u.end(),
             image.begin() + static_cast<std::ptrdiff_t>(layout.shape_size()));
   return image;

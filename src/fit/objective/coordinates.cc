@@ -15,6 +15,12 @@ constexpr const char* kSlopeNames[] = {"slope_x", "slope_y", "ln a", "b", "ln c"
 constexpr double kSlopeLow[] = {-10, -10, -9.2103403719761836, -10, -9.2103403719761836};
 constexpr double kSlopeHigh[] = {10, 10, 2.302585092994046, 10, 2.302585092994046};
 
+// Below, Student's slopes have no mean.
+constexpr double kLeastGamma = 1.5;
+// tau of the coefficients' prior. Without data a coefficient stays within it; 5 % noise and 40 samples determine those
+// within the data to a tenth of it.
+constexpr double kProfileSpread = 2;
+
 double* Entry(Ellipsoid* ellipsoid, int i) {
   double* entries[] = {&ellipsoid->alpha_x, &ellipsoid->alpha_y, &ellipsoid->theta_x, &ellipsoid->theta_y,
                        &ellipsoid->theta_z};
@@ -42,7 +48,7 @@ void Layout::AddShape(std::size_t lobe, const std::vector<Parameter>& parameters
   shape.first = coordinates_.size();
   const Ndf ndf = recipe_.model.lobes[lobe].ndf;
   shape.tied = IsRound(ndf);
-  if (ndf == Ndf::kGgxTilted) shape.fixed[4] = -recipe_.plane_azimuth;
+  if (IsInPlane(ndf)) shape.fixed[4] = -recipe_.plane_azimuth;
   bool restricted = shape.tied;
   for (std::size_t i = 0; i < 5; ++i) {
     const ParameterRecipe& entry = recipe_.parameters[first_parameter + i];
@@ -68,7 +74,38 @@ void Layout::AddShape(std::size_t lobe, const std::vector<Parameter>& parameters
       }
     }
   }
+  AddProfile(lobe, parameters, &shape);
   shapes_.push_back(shape);
+}
+
+void Layout::AddProfile(std::size_t lobe, const std::vector<Parameter>& parameters, Shape* shape) {
+  const std::size_t first = FirstParameter(recipe_.model, lobe) + kEllipseParameters;
+  for (std::size_t k = 0; k + kEllipseParameters < ShapeParameters(recipe_.model.lobes[lobe]); ++k) {
+    const Parameter& parameter = parameters[first + k];
+    const ParameterRecipe& entry = recipe_.parameters[first + k];
+    const double start = entry.start.empty() ? parameter.start : entry.start[0];
+    shape->profile_start.push_back(entry.fixed.empty() ? start : entry.fixed[0]);
+    if (!entry.fixed.empty()) continue;
+    const double low = entry.low.value_or(parameter.low), high = entry.high.value_or(parameter.high);
+    shape->profile.push_back(k);
+    if (IsGamma(lobe)) {
+      coordinates_.push_back(
+          {"ln(" + parameter.name + " - 3/2)", std::log(low - kLeastGamma), std::log(high - kLeastGamma)});
+    } else {
+      coordinates_.push_back({parameter.name, low, high, 1 / (kProfileSpread * kProfileSpread)});
+    }
+  }
+}
+
+std::vector<double> Layout::ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes) const {
+  const Shape& shape = shapes_[lobe];
+  std::vector<double> values = shape.profile_start;
+  for (std::size_t k = 0; k < shape.profile.size(); ++k) {
+    const double x = u[shape.first + shape.entries.size() + k];
+    values[shape.profile[k]] = IsGamma(lobe) ? kLeastGamma + std::exp(x) : x;
+    if (slopes != nullptr) slopes->push_back(IsGamma(lobe) ? std::exp(x) : 1.0);
+  }
+  return values;
 }
 
 void Layout::AddLinear(const Parameter& parameter, const ParameterRecipe& entry,
@@ -77,7 +114,9 @@ void Layout::AddLinear(const Parameter& parameter, const ParameterRecipe& entry,
   for (std::size_t c = 0; c < channels_; ++c) {
     Linear linear;
     linear.start = entry.start.empty() ? parameter.start : entry.start[std::min(c, entry.start.size() - 1)];
-    if (!entry.fixed.empty()) {
+    if (!parameter.free && entry.fixed.empty()) {
+      linear.value = parameter.start;
+    } else if (!entry.fixed.empty()) {
       if (entry.fixed.size() != 1 && entry.fixed.size() != channels_) {
         throw InputError("recipe '" + recipe_.name + "': '" + parameter.json_name + "' is fixed to " +
                          std::to_string(entry.fixed.size()) + " values, the measurement has " +
@@ -117,23 +156,28 @@ KernelModel Layout::ToKernel(const double* u) const {
   kernel.loss_scale = recipe_.loss_scale;
   kernel.diffuse_kind = recipe_.model.diffuse;
   kernel.channels = channels_;
+  if (std::any_of(coordinates_.begin(), coordinates_.end(), [](const Coordinate& c) { return c.prior > 0; })) {
+    for (const Coordinate& coordinate : coordinates_) kernel.prior.push_back(coordinate.prior);
+    kernel.coordinates.assign(u, u + size());
+  }
   std::size_t first_linear = 0;
   for (std::size_t l = 0; l < shapes_.size(); ++l) {
     const Shape& shape = shapes_[l];
     KernelLobe lobe;
     lobe.kind = recipe_.model.lobes[l];
-    lobe.columns = shape.entries.size();
-    lobe.jacobian.assign(5 * lobe.columns, 0.0);
+    lobe.columns = shape.columns();
+    lobe.jacobian.assign(ShapeParameters(lobe.kind) * lobe.columns, 0.0);
+    SlopeCoordinates slope;
     if (shape.slope) {
-      lobe.shape = SlopeAt(shape, u);
-      for (std::size_t k = 0; k < lobe.columns; ++k)
+      slope = SlopeAt(shape, u);
+      for (std::size_t k = 0; k < shape.entries.size(); ++k)
         lobe.jacobian[static_cast<std::size_t>(shape.entries[k]) * lobe.columns + k] = 1;
     } else {
       const Ellipsoid ellipsoid = EllipsoidAt(shape, u);
       double jacobian[25];
-      lobe.shape = SlopeCoordinatesFromEllipsoid(ellipsoid, jacobian);
+      slope = SlopeCoordinatesFromEllipsoid(ellipsoid, jacobian);
       for (std::size_t j = 0; j < 5; ++j) {
-        for (std::size_t k = 0; k < lobe.columns; ++k) {
+        for (std::size_t k = 0; k < shape.entries.size(); ++k) {
           const int i = shape.entries[k];
           double derivative = jacobian[5 * j + static_cast<std::size_t>(i)];
           if (i == 0 && shape.tied) derivative += jacobian[5 * j + 1];
@@ -143,6 +187,10 @@ KernelModel Layout::ToKernel(const double* u) const {
         }
       }
     }
+    std::vector<double> slopes;
+    lobe.shape = LobeShape(lobe.kind, slope, ProfileAt(l, u, &slopes));
+    for (std::size_t k = 0; k < shape.profile.size(); ++k)
+      lobe.jacobian[(kEllipseParameters + shape.profile[k]) * lobe.columns + shape.entries.size() + k] = slopes[k];
     const std::size_t size = FresnelParameters(lobe.kind.fresnel);
     for (std::size_t c = 0; c < channels_; ++c) {
       for (std::size_t k = 0; k < size; ++k) lobe.fresnel.push_back(Value(linear_[c][first_linear + k], u));
@@ -150,8 +198,10 @@ KernelModel Layout::ToKernel(const double* u) const {
     first_linear += size;
     kernel.lobes.push_back(lobe);
   }
-  for (std::size_t c = 0; recipe_.model.diffuse != Diffuse::kNone && c < channels_; ++c)
-    kernel.diffuse.push_back(Value(linear_[c].back(), u));
+  const std::size_t diffuse_size = DiffuseParameters(recipe_.model.diffuse);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    for (std::size_t k = 0; k < diffuse_size; ++k) kernel.diffuse.push_back(Value(linear_[c][first_linear + k], u));
+  }
   return kernel;
 }
 
@@ -165,6 +215,10 @@ std::vector<double> Layout::FromShapes(const std::vector<Ellipsoid>& shapes) con
       const double entry = *Entry(&ellipsoid, i);
       u[shapes_[l].first + k] = shapes_[l].slope ? slope.v[i] : (i < 2 ? std::log(entry) : entry);
     }
+    for (std::size_t k = 0; k < shapes_[l].profile.size(); ++k) {
+      const double start = shapes_[l].profile_start[shapes_[l].profile[k]];
+      u[shapes_[l].first + shapes_[l].entries.size() + k] = IsGamma(l) ? std::log(start - kLeastGamma) : start;
+    }
   }
   for (const std::vector<Linear>& channel : linear_) {
     for (const Linear& linear : channel) {
@@ -173,6 +227,13 @@ std::vector<double> Layout::FromShapes(const std::vector<Ellipsoid>& shapes) con
   }
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = std::clamp(u[i], coordinates_[i].low, coordinates_[i].high);
   return u;
+}
+
+void Layout::CopyProfiles(const std::vector<double>& from, std::vector<double>* to) const {
+  for (const Shape& shape : shapes_) {
+    const std::size_t first = shape.first + shape.entries.size();
+    for (std::size_t k = first; k < shape.first + shape.columns(); ++k) (*to)[k] = from[k];
+  }
 }
 
 void Layout::Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const {
@@ -198,6 +259,11 @@ void Layout::Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::Vec
         }
       }
     }
+  }
+  for (std::size_t k = 0; k < sums.prior_slope.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    (*hessian)(i, i) += sums.prior_curvature[k];
+    (*gradient)(i) += sums.prior_slope[k];
   }
 }
 
@@ -230,14 +296,16 @@ ParameterValues Layout::Report(const double* u) const {
     const Shape& shape = shapes_[l];
     Ellipsoid ellipsoid = shape.slope ? EllipsoidFromSlopeCoordinates(SlopeAt(shape, u)) : EllipsoidAt(shape, u);
     for (int i = 0; i < 5; ++i) values.push_back({*Entry(&ellipsoid, i)});
+    for (const double value : ProfileAt(l, u)) values.push_back({value});
     for (std::size_t k = 0; k < FresnelParameters(recipe_.model.lobes[l].fresnel); ++k) add_linear();
   }
-  if (recipe_.model.diffuse != Diffuse::kNone) add_linear();
+  for (std::size_t k = 0; k < DiffuseParameters(recipe_.model.diffuse); ++k) add_linear();
   return values;
 }
 
 Eigen::MatrixXd Layout::ReportJacobian(const double* u) const {
-  const std::size_t rows = shapes_.size() * kShapeParameters + linear_[0].size() * channels_;
+  std::size_t rows = linear_[0].size() * channels_;
+  for (const Lobe& lobe : recipe_.model.lobes) rows += ShapeParameters(lobe);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(size()));
   Eigen::Index row = 0;
   std::size_t next = 0;
@@ -263,9 +331,16 @@ Eigen::MatrixXd Layout::ReportJacobian(const double* u) const {
       }
     }
     row += 5;
+    std::vector<double> slopes;
+    const std::vector<double> profile = ProfileAt(l, u, &slopes);
+    for (std::size_t k = 0; k < shape.profile.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(shape.first + shape.entries.size() + k);
+      jacobian(row + static_cast<Eigen::Index>(shape.profile[k]), column) = slopes[k];
+    }
+    row += static_cast<Eigen::Index>(profile.size());
     for (std::size_t k = 0; k < FresnelParameters(recipe_.model.lobes[l].fresnel); ++k) add_linear();
   }
-  if (recipe_.model.diffuse != Diffuse::kNone) add_linear();
+  for (std::size_t k = 0; k < DiffuseParameters(recipe_.model.diffuse); ++k) add_linear();
   return jacobian;
 }
 

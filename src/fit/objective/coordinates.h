@@ -19,6 +19,9 @@ namespace lobefit {
 struct Coordinate {
   std::string name;  // for messages: "ln alpha_x", "f0[R]"
   double low, high;  // bounds of the solver
+  // Weight of a prior: the cost grows by s^2 prior u^2 / 2, s^2 the mean square of the residuals. That of GGX for the
+  // coefficients of a profile: where nothing was measured they stay near it (math.md 8.1, tau = 2).
+  double prior = 0;
 };
 
 class Layout {
@@ -41,6 +44,9 @@ class Layout {
   // Coordinates of lobe shapes given as ellipsoids, Fresnel parameters and albedos at the start that the recipe or the
   // parameter table gives; fixed ones are ignored, all are moved into the bounds.
   std::vector<double> FromShapes(const std::vector<Ellipsoid>& shapes) const;
+
+  // The coordinates of profiles, from one point to another.
+  void CopyProfiles(const std::vector<double>& from, std::vector<double>* to) const;
 
   // Gauss-Newton matrix J^T J and gradient J^T r in solver coordinates from the sums over samples.
   void Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
@@ -68,12 +74,19 @@ class Layout {
   struct Shape {
     bool slope = false;                 // slope coordinates, else ln alpha and angles
     std::vector<int> entries;           // slope coordinates, or ellipsoid parameters, that are free
+    std::vector<std::size_t> profile;   // free parameters of the profile, whose coordinates follow
+    std::vector<double> profile_start;  // of all of them, free or not
+    std::size_t columns() const { return entries.size() + profile.size(); }
     bool tied = false;                  // alpha_y follows alpha_x
     double fixed[5] = {1, 1, 0, 0, 0};  // ellipsoid parameters that are not free
     std::size_t first = 0;              // first coordinate
   };
 
   void AddShape(std::size_t lobe, const std::vector<Parameter>& parameters, std::size_t first_parameter);
+  void AddProfile(std::size_t lobe, const std::vector<Parameter>& parameters, Shape* shape);
+  // Parameters of the profile at `u`, and where asked d(parameter) / d(coordinate) of the free ones.
+  std::vector<double> ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes = nullptr) const;
+  bool IsGamma(std::size_t lobe) const { return FamilyOf(recipe_.model.lobes[lobe].ndf) == NdfFamily::kStudent; }
   void AddLinear(const Parameter& parameter, const ParameterRecipe& entry, const std::vector<std::string>& channels);
   double Value(const Linear& linear, const double* u) const {
     return linear.index < 0 ? linear.value : u[linear.index];

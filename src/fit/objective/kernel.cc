@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/diffuse_facets.h"
 #include "lobefit/core/brdf/lobe.h"
 #include "lobefit/fit/objective/kernel_arrays.h"
@@ -27,19 +28,27 @@ class Block {
     for (const KernelLobe& lobe : model.lobes) {
       first_fresnel_.push_back(fresnel_size_);
       fresnel_size_ += FresnelParameters(lobe.kind.fresnel);
+      first_contracted_.push_back(contracted_size_);
+      contracted_size_ += lobe.columns;
+      shape_size_ = std::max(shape_size_, ShapeParameters(lobe.kind));
     }
+    // Behind the lobes' columns those of the first lobe's facets.
+    const std::size_t facets = model.diffuse_kind == Diffuse::kMicrofacet && lobes > 0 ? model.lobes[0].columns : 0;
+    const bool directional = IsDirectional(model.diffuse_kind) && !model.diffuse.empty();
+    const std::size_t diffuse_size = model.diffuse.empty() ? 0 : DiffuseParameters(model.diffuse_kind);
     const bool linear = std::all_of(model.lobes.begin(), model.lobes.end(), IsLinear);
     // Arrays, and how many blocks each needs, in one piece of memory: a fit of 200 samples is made of passes that take
     // 5 us.
     const std::pair<std::span<double>*, std::size_t> arrays[] = {
         {&specular_, lobes},
-        {&gradients_, gradient ? 5 : 0},
-        {&contracted_, gradient ? (lobes + 1) * 5 : 0},
-        {&cos_d_, 1},
-        {&diffuse_, 1},
+        {&gradients_, gradient ? shape_size_ : 0},
+        {&contracted_, gradient ? contracted_size_ + facets : 0},
+        {&cos_d_, lobes},
+        {&diffuse_, directional ? channels : 1},
+        {&diffuse_gradient_, directional && gradient ? channels * diffuse_size : 0},
         {&sqrt_weight_, 1},
-        {&p5_, 1},
-        {&one_minus_p5_, 1},
+        {&p5_, lobes},
+        {&one_minus_p5_, lobes},
         {&ones_, 1},
         {&factor_, linear ? 0 : channels * lobes},
         {&factor_gradient_, linear ? 0 : channels * fresnel_size_},
@@ -59,7 +68,9 @@ class Block {
     std::fill(diffuse_.begin(), diffuse_.end(), kInvPi);
     std::fill(ones_.begin(), ones_.end(), 1.0);
     if (model.diffuse_kind == Diffuse::kMicrofacet && !model.diffuse.empty())
-      facets_.emplace(model.lobes[0].kind, model.lobes[0].shape);
+      facets_.emplace(model.lobes[0].kind, model.lobes[0].shape.slope);
+    for (std::size_t c = 0; directional && c < channels; ++c)
+      directional_.emplace_back(model.diffuse_kind, model.diffuse.data() + c * diffuse_size);
   }
 
   // Values of samples [begin, begin + count), count <= kBlock.
@@ -73,7 +84,7 @@ class Block {
     directions.count = count;
     cos_i_ = Padded(directions.wi_z, 0.0, &cos_i_pad_);
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) EvaluateLobe(l, directions);
-    arrays::Schlick(cos_d_.data(), padded_, p5_.data(), one_minus_p5_.data());
+    for (std::size_t c = 0; c < directional_.size(); ++c) EvaluateDiffuse(c, directions);
     if (facets_) {
       facets_->Evaluate(directions, diffuse_.data(), gradient_ ? gradients_.data() : nullptr);
       std::fill(diffuse_.begin() + static_cast<std::ptrdiff_t>(count_), diffuse_.end(), 0.0);
@@ -82,7 +93,9 @@ class Block {
     for (std::size_t c = 0; c < model_.channels; ++c) {
       double* f = f_.data() + c * kBlock;
       std::fill_n(f, padded_, 0.0);
-      if (!model_.diffuse.empty()) {
+      if (!directional_.empty()) {
+        arrays::AddScaled(diffuse_.data() + c * kBlock, 1.0, padded_, f);
+      } else if (!model_.diffuse.empty()) {
         arrays::AddScaled(diffuse_.data(), model_.diffuse[c], padded_, f);
       }
       for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
@@ -129,7 +142,7 @@ class Block {
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
       const bool facets = facets_ && l == 0;
       const Factor factor = FactorOf(l, c);
-      arrays::ShapeColumn(slope, factor.constant, factor.slope, factor.array, contracted_.data() + l * 5 * kBlock,
+      arrays::ShapeColumn(slope, factor.constant, factor.slope, factor.array, contracted(l),
                           facets ? model_.diffuse[c] : 0.0, facets ? diffuse_contracted() : nullptr,
                           model_.lobes[l].columns, padded_, kBlock, to);
       to += model_.lobes[l].columns * kBlock;
@@ -139,7 +152,9 @@ class Block {
         arrays::Product(slope, specular_.data() + l * kBlock, FactorGradient(l, k, c), padded_, to);
       }
     }
-    if (!model_.diffuse.empty()) {
+    for (std::size_t k = 0; k < (directional_.empty() ? 0 : DiffuseParameters(model_.diffuse_kind)); ++k, to += kBlock)
+      arrays::Multiply(slope, diffuse_gradient(c, k), padded_, to);
+    if (directional_.empty() && !model_.diffuse.empty()) {
       arrays::Multiply(slope, diffuse_.data(), padded_, to);
       to += kBlock;
     }
@@ -154,21 +169,37 @@ class Block {
   void EvaluateLobe(std::size_t l, const DirectionArrays& directions) {
     const KernelLobe& lobe = model_.lobes[l];
     double* specular = specular_.data() + l * kBlock;
-    SpecularLobe(directions, lobe.kind, lobe.shape, specular, cos_d_.data(), gradient_ ? gradients_.data() : nullptr);
+    double* cos_d = cos_d_.data() + l * kBlock;
+    SpecularLobe(directions, lobe.kind, lobe.shape, specular, cos_d, gradient_ ? gradients_.data() : nullptr);
     std::fill(specular + count_, specular + padded_, 0.0);
-    std::fill(cos_d_.begin() + static_cast<std::ptrdiff_t>(count_), cos_d_.end(), 1.0);
-    if (gradient_) ContractGradients(l, contracted_.data() + l * 5 * kBlock);
+    std::fill(cos_d + count_, cos_d + padded_, 1.0);
+    if (IsLinear(lobe)) arrays::Schlick(cos_d, padded_, p5_.data() + l * kBlock, one_minus_p5_.data() + l * kBlock);
+    if (gradient_) ContractGradients(l, contracted(l));
+  }
+
+  void EvaluateDiffuse(std::size_t c, const DirectionArrays& d) {
+    double* value = diffuse_.data() + c * kBlock;
+    for (std::size_t i = 0; i < count_; ++i) {
+      double gradient[2];
+      value[i] = directional_[c].Evaluate({d.wi_x[i], d.wi_y[i], d.wi_z[i]}, {d.wo_x[i], d.wo_y[i], d.wo_z[i]},
+                                          gradient_ ? gradient : nullptr);
+      for (std::size_t k = 0; gradient_ && k < 2; ++k) diffuse_gradient(c, k)[i] = gradient[k];
+    }
+    std::fill(value + count_, value + padded_, 0.0);
+    for (std::size_t k = 0; gradient_ && k < 2; ++k)
+      std::fill(diffuse_gradient(c, k) + count_, diffuse_gradient(c, k) + padded_, 0.0);
   }
 
   // gradients_, by slope coordinates, to the solver's coordinates of lobe l. They were written with a stride of
   // `count_`: the last, shorter block is spread to kBlock first.
   void ContractGradients(std::size_t l, double* to) {
     double* gradients = gradients_.data();
-    for (std::size_t j = 5; j-- > 0 && count_ < kBlock;) {
+    const std::size_t size = ShapeParameters(model_.lobes[l].kind);
+    for (std::size_t j = size; j-- > 0 && count_ < kBlock;) {
       std::copy_backward(gradients + j * count_, gradients + (j + 1) * count_, gradients + j * kBlock + count_);
       std::fill(gradients + j * kBlock + count_, gradients + j * kBlock + padded_, 0.0);
     }
-    arrays::Contract(gradients, model_.lobes[l].jacobian.data(), model_.lobes[l].columns, padded_, kBlock, to);
+    arrays::Contract(gradients, model_.lobes[l].jacobian.data(), size, model_.lobes[l].columns, padded_, kBlock, to);
   }
 
   // Fresnel factor of lobe l in channel c, constant + slope * array; for kinds that are not linear in their parameters
@@ -184,7 +215,8 @@ class Block {
     double* value = factor_.data() + (c * model_.lobes.size() + l) * kBlock;
     for (std::size_t i = 0; i < padded_; ++i) {
       double dF[kMaxFresnelParameters];
-      value[i] = FresnelFactor(lobe.kind.fresnel, lobe.fresnel.data() + c * size, cos_d_[i], gradient_ ? dF : nullptr);
+      value[i] = FresnelFactor(lobe.kind.fresnel, lobe.fresnel.data() + c * size, cos_d_[l * kBlock + i],
+                               gradient_ ? dF : nullptr);
       for (std::size_t k = 0; gradient_ && k < size; ++k) factor_gradient(c, first_fresnel_[l] + k)[i] = dF[k];
     }
     return {0, 1, value};
@@ -195,7 +227,7 @@ class Block {
   Factor LinearFactor(std::size_t l, std::size_t c) const {
     const KernelLobe& lobe = model_.lobes[l];
     if (lobe.kind.fresnel == Fresnel::kNone) return {lobe.fresnel[c], 0, ones_.data()};
-    return {lobe.fresnel[c], 1 - lobe.fresnel[c], p5_.data()};
+    return {lobe.fresnel[c], 1 - lobe.fresnel[c], p5_.data() + l * kBlock};
   }
   Factor FactorOf(std::size_t l, std::size_t c) const {
     if (IsLinear(model_.lobes[l])) return LinearFactor(l, c);
@@ -204,13 +236,17 @@ class Block {
   // Derivative of the factor by the k-th parameter of lobe l.
   const double* FactorGradient(std::size_t l, std::size_t k, std::size_t c) {
     if (model_.lobes[l].kind.fresnel == Fresnel::kNone) return ones_.data();
-    if (model_.lobes[l].kind.fresnel == Fresnel::kSchlick) return one_minus_p5_.data();
+    if (model_.lobes[l].kind.fresnel == Fresnel::kSchlick) return one_minus_p5_.data() + l * kBlock;
     return factor_gradient(c, first_fresnel_[l] + k);
   }
   double* factor_gradient(std::size_t c, std::size_t k) {
     return factor_gradient_.data() + (c * fresnel_size_ + k) * kBlock;
   }
-  double* diffuse_contracted() { return contracted_.data() + model_.lobes.size() * 5 * kBlock; }
+  double* contracted(std::size_t l) { return contracted_.data() + first_contracted_[l] * kBlock; }
+  double* diffuse_contracted() { return contracted_.data() + contracted_size_ * kBlock; }
+  double* diffuse_gradient(std::size_t c, std::size_t k) {
+    return diffuse_gradient_.data() + (c * DiffuseParameters(model_.diffuse_kind) + k) * kBlock;
+  }
 
   // Square roots of the weights of this block, 0 for pads; null where all are 1.
   const double* SqrtWeight(std::size_t begin) {
@@ -245,11 +281,15 @@ class Block {
   std::size_t count_ = 0, padded_ = 0;
   const double* cos_i_ = nullptr;
   std::optional<DiffuseFacets> facets_;
-  std::size_t fresnel_size_ = 0;            // of all lobes
-  std::vector<std::size_t> first_fresnel_;  // of each lobe
+  std::vector<DirectionalDiffuse> directional_;  // [channel]
+  std::size_t shape_size_ = kEllipseParameters;  // most of a lobe
+  std::size_t contracted_size_ = 0;              // columns of all lobes' shapes
+  std::vector<std::size_t> first_contracted_;    // of each lobe
+  std::size_t fresnel_size_ = 0;                 // of all lobes
+  std::vector<std::size_t> first_fresnel_;       // of each lobe
   std::unique_ptr<double[]> memory_;
   std::span<double> specular_, gradients_, contracted_, cos_d_, p5_, one_minus_p5_, ones_, factor_, factor_gradient_,
-      diffuse_;
+      diffuse_, diffuse_gradient_;
   std::span<double> f_, residual_, slope_, columns_, sqrt_weight_;
   std::vector<double> cos_i_pad_, cos_o_pad_, measured_pad_;
 };
@@ -263,7 +303,7 @@ std::size_t KernelModel::shape_columns() const {
 }
 
 std::size_t KernelModel::columns() const {
-  std::size_t sum = shape_columns() + (diffuse.empty() ? 0 : 1) + 1;
+  std::size_t sum = shape_columns() + (diffuse.empty() ? 0 : DiffuseParameters(diffuse_kind)) + 1;
   for (const KernelLobe& lobe : lobes) sum += FresnelParameters(lobe.kind.fresnel);
   return sum;
 }

@@ -27,21 +27,24 @@ struct KernelSamples {
 
 struct KernelLobe {
   Lobe kind;
-  SlopeCoordinates shape;
+  LobeShape shape;
   std::vector<double> fresnel;  // [channel][FresnelParameters(kind.fresnel)]
-  // d(slope coordinates) / d(solver's shape coordinates), 5 x columns row-major.
+  // d(slope coordinates, then the profile's parameters) / d(solver's shape coordinates), ShapeParameters(kind) x
+  // columns row-major.
   std::size_t columns = 0;
   std::vector<double> jacobian;
 };
 
 struct KernelModel {
   std::vector<KernelLobe> lobes;
-  std::vector<double> diffuse;  // albedo a channel; empty: no diffuse part
+  std::vector<double> diffuse;  // [channel][DiffuseParameters(diffuse_kind)]; empty: no diffuse part
   Diffuse diffuse_kind = Diffuse::kLambert;
   std::size_t channels = 1;
   Transform transform;
   Loss loss = Loss::kNone;
   double loss_scale = 1;
+  // Weights of the priors and the solver's coordinates (Coordinate::prior); empty: none.
+  std::vector<double> prior, coordinates;
 
   std::size_t shape_columns() const;
   // Columns of one channel: shape coordinates of all lobes, Fresnel parameters lobe by lobe, the diffuse albedo, the
@@ -54,6 +57,9 @@ struct KernelSums {
   double sum_rho = 0;  // sum over samples of rho(sum over channels of weighted squared residuals)
   std::vector<std::vector<double>> gram;
   double sum_robust_weight = 0;  // sum of rho'; equals the count without a loss
+  // Of the priors, once all samples are summed (Problem::Sum, which adds their part to sum_rho too): second and first
+  // derivatives of half their sum, a coordinate; empty: none.
+  std::vector<double> prior_curvature, prior_slope;
 };
 
 // Adds the samples [begin, end) to `sums`; without `gradient` only sum_rho. The order of additions depends on begin and

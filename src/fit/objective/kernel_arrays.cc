@@ -31,13 +31,13 @@ void SchlickArrays(const double* cos_d, std::size_t n, double* p5, double* one_m
   }
 }
 
-// to[k] = sum_j jacobian[j][k] from[j], arrays of n with the given strides.
-void ContractArrays(const double* from, const double* jacobian, std::size_t columns, std::size_t n, std::size_t stride,
-                    double* to) {
+// to[k] = sum_j jacobian[j][k] from[j], j < rows, k < columns, arrays of n with the given strides.
+void ContractArrays(const double* from, const double* jacobian, std::size_t rows, std::size_t columns, std::size_t n,
+                    std::size_t stride, double* to) {
   for (std::size_t k = 0; k < columns; ++k) {
     for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
       V64 sum = hn::Zero(D64());
-      for (std::size_t j = 0; j < 5; ++j)
+      for (std::size_t j = 0; j < rows; ++j)
         sum = hn::MulAdd(Constant(jacobian[j * columns + k]), Load(from + j * stride + i), sum);
       hn::StoreU(sum, D64(), to + k * stride + i);
     }
@@ -160,9 +160,9 @@ namespace arrays {
 void Schlick(const double* cos_d, std::size_t n, double* p5, double* one_minus_p5) {
   HWY_DYNAMIC_DISPATCH(SchlickArrays)(cos_d, n, p5, one_minus_p5);
 }
-void Contract(const double* from, const double* jacobian, std::size_t columns, std::size_t n, std::size_t stride,
-              double* to) {
-  HWY_DYNAMIC_DISPATCH(ContractArrays)(from, jacobian, columns, n, stride, to);
+void Contract(const double* from, const double* jacobian, std::size_t rows, std::size_t columns, std::size_t n,
+              std::size_t stride, double* to) {
+  HWY_DYNAMIC_DISPATCH(ContractArrays)(from, jacobian, rows, columns, n, stride, to);
 }
 void AddFactor(const double* a, double constant, double slope, const double* array, std::size_t n, double* to) {
   HWY_DYNAMIC_DISPATCH(AddFactorArrays)(a, constant, slope, array, n, to);

@@ -10,9 +10,9 @@ namespace lobefit::arrays {
 // lanes).
 void Schlick(const double* cos_d, std::size_t n, double* p5, double* one_minus_p5);
 
-// to[k] = sum_j jacobian[j][k] from[j], arrays of n with the given strides.
-void Contract(const double* from, const double* jacobian, std::size_t columns, std::size_t n, std::size_t stride,
-              double* to);
+// to[k] = sum_j jacobian[j][k] from[j], j < rows, k < columns, arrays of n with the given strides.
+void Contract(const double* from, const double* jacobian, std::size_t rows, std::size_t columns, std::size_t n,
+              std::size_t stride, double* to);
 
 // to += a * (constant + slope * array).
 void AddFactor(const double* a, double constant, double slope, const double* array, std::size_t n, double* to);

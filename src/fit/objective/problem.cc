@@ -129,6 +129,13 @@ KernelSums Problem::Sum(const KernelModel& model, bool gradient, ThreadPool* poo
       for (std::size_t k = 0; k < total.gram[c].size(); ++k) total.gram[c][k] += partial[run].gram[c][k];
     }
   }
+  // In units of the mean square of the residuals, so that priors count as much as some samples of any measurement.
+  const double square = total.sum_rho / static_cast<double>(size() * channels());
+  for (std::size_t k = 0; k < model.prior.size(); ++k) {
+    total.prior_curvature.push_back(square * model.prior[k]);
+    total.prior_slope.push_back(square * model.prior[k] * model.coordinates[k]);
+    total.sum_rho += total.prior_slope.back() * model.coordinates[k];
+  }
   return total;
 }
 

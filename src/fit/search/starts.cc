@@ -58,7 +58,8 @@ std::vector<Ellipsoid> WithGivenStarts(std::vector<Ellipsoid> candidates, const 
 }
 
 bool SameKind(const Lobe& a, const Lobe& b) {
-  return a.ndf == b.ndf && a.masking == b.masking && a.fresnel == b.fresnel && a.metal == b.metal;
+  return a.ndf == b.ndf && a.masking == b.masking && a.fresnel == b.fresnel && a.metal == b.metal &&
+         a.direction == b.direction && GridOf(a) == GridOf(b);
 }
 
 }  // namespace
@@ -107,13 +108,13 @@ std::vector<double> LinearisedWeights(const Samples& samples, Metric metric, con
 
 Ellipsoid PeakAxis(const Samples& samples, Ndf ndf, double plane_azimuth) {
   const Vec3 peak = PeakNormal(samples);
-  if (ndf != Ndf::kGgxTilted) return {1, 1, std::asin(std::clamp(peak.y, -1.0, 1.0)), std::atan2(-peak.x, peak.z), 0};
+  if (!IsInPlane(ndf)) return {1, 1, std::asin(std::clamp(peak.y, -1.0, 1.0)), std::atan2(-peak.x, peak.z), 0};
   const double along = peak.x * std::cos(plane_azimuth) + peak.y * std::sin(plane_azimuth);
   return {1, 1, 0, std::atan2(-along, peak.z), -plane_azimuth};
 }
 
 std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double plane_azimuth) {
-  std::vector<Ellipsoid> tilts = {{1, 1, 0, 0, ndf == Ndf::kGgxTilted ? -plane_azimuth : 0.0}};
+  std::vector<Ellipsoid> tilts = {{1, 1, 0, 0, IsInPlane(ndf) ? -plane_azimuth : 0.0}};
   if (IsTilted(ndf)) tilts.push_back(PeakAxis(samples, ndf, plane_azimuth));
   std::vector<Ellipsoid> shapes;
   for (const Ellipsoid& tilt : tilts) {

@@ -24,8 +24,8 @@ std::vector<std::size_t> StratifiedSubsample(std::size_t samples, std::size_t co
 // half vector where the measured density of normals peaks; for anisotropic ones, four orientations.
 std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double plane_azimuth);
 
-// A shape with alphas 1 whose axis points to where the measured density of half vectors peaks; for kGgxTilted the part
-// of that within the plane.
+// A shape with alphas 1 whose axis points to where the measured density of half vectors peaks; for lobes in the plane
+// the part of that within the plane.
 Ellipsoid PeakAxis(const Samples& samples, Ndf ndf, double plane_azimuth);
 
 // Weights that turn the squared differences of f cos_theta_i (of f for the relative metric) into the metric's, to first

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lobefit/core/brdf/coat.h"
+#include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/diffuse_facets.h"
 #include "lobefit/core/brdf/lobe.h"
+#include "lobefit/core/fresnel/fresnel.h"
 #include "lobefit/core/ndf/slope_ndf.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/math/quadrature.h"
@@ -15,10 +18,8 @@ namespace {
 constexpr int kRings = 160, kSteps = 64;
 constexpr int kDiffuseRings = 24, kDiffuseSteps = 48;
 
-SlopeCoordinates ShapeOf(const Model& model, const ParameterValues& values, std::size_t lobe) {
-  const std::size_t at = FirstParameter(model, lobe);
-  return SlopeCoordinatesFromEllipsoid(
-      {values[at][0], values[at + 1][0], values[at + 2][0], values[at + 3][0], values[at + 4][0]});
+LobeShape ShapeOf(const Model& model, const ParameterValues& values, std::size_t lobe) {
+  return ShapeAt(model.lobes[lobe], &values[FirstParameter(model, lobe)]);
 }
 
 // Calls each(m, share) for facets m at the slopes of equal probability of GGX's P22 (midpoints in probability and
@@ -40,12 +41,13 @@ void ForFacets(const SlopeCoordinates& shape, const Each& each) {
 }
 
 // Adds the albedo of the lobe to `albedo`, a channel, with F of parameters[channel].
-void AddLobe(const Lobe& lobe, const SlopeCoordinates& shape, Fresnel fresnel,
+void AddLobe(const Lobe& lobe, const LobeShape& shape, Fresnel fresnel,
              const std::vector<std::vector<double>>& parameters, const Vec3& wi, std::vector<double>* albedo) {
-  ForFacets(shape, [&](const Vec3& m, double share) {
-    // wo is the mirror image of wi at the facet.
-    const double along = Dot(wi, m);
-    const Vec3 wo = Reflect(wi, m);
+  const Vec3 light = lobe.direction == LobeDirection::kRetro ? Mirrored(wi) : wi;
+  ForFacets(shape.slope, [&](const Vec3& m, double share) {
+    // wo is the mirror image of wi (of a retro lobe's mirrored wi) at the facet.
+    const double along = Dot(light, m);
+    const Vec3 wo = Reflect(light, m);
     if (along <= 0 || wo.z <= 0) return;
     double cos_d = 0;
     const double specular = SpecularLobe(wi, wo, lobe, shape, &cos_d, nullptr);
@@ -73,8 +75,13 @@ std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues&
                                       const Vec3& wi) {
   std::vector<double> albedo(channels, 0.0);
   if (model.diffuse != Diffuse::kNone) albedo = values.back();
+  for (std::size_t c = 0; IsDirectional(model.diffuse) && c < channels; ++c) {
+    const double first = values[values.size() - 2][c];
+    albedo[c] = model.diffuse == Diffuse::kInterfaced ? albedo[c] * DielectricTransmittance(wi.z, first)
+                                                      : OrenNayarAlbedo(albedo[c], first, wi.z);
+  }
   if (model.diffuse == Diffuse::kMicrofacet) {
-    const double unit = DiffuseFacetsAlbedo(DiffuseFacets(model.lobes[0], ShapeOf(model, values, 0)), wi);
+    const double unit = DiffuseFacetsAlbedo(DiffuseFacets(model.lobes[0], ShapeOf(model, values, 0).slope), wi);
     for (double& a : albedo) a *= unit;
   }
   for (std::size_t lobe = 0; lobe < model.lobes.size(); ++lobe) {
@@ -82,7 +89,7 @@ std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues&
     std::vector<std::vector<double>> parameters(channels);
     for (std::size_t c = 0; c < channels; ++c) {
       for (std::size_t k = 0; k < FresnelParameters(fresnel); ++k)
-        parameters[c].push_back(values[FirstParameter(model, lobe) + kShapeParameters + k][c]);
+        parameters[c].push_back(values[FirstFresnel(model, lobe) + k][c]);
     }
     AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), fresnel, parameters, wi, &albedo);
   }
@@ -98,12 +105,12 @@ double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std
 double WeakFurnace(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& u) {
   const Masking masking = model.lobes[lobe].masking;
   if (masking == Masking::kSmithUnclamped || masking == Masking::kVCavity) return 1;
-  const SlopeCoordinates shape = ShapeOf(model, values, lobe);
-  const std::unique_ptr<NormalDistribution> distribution = DistributionOf(model.lobes[lobe].ndf, shape, nullptr);
+  const LobeShape shape = ShapeOf(model, values, lobe);
+  const std::unique_ptr<NormalDistribution> distribution = DistributionOf(model.lobes[lobe], shape, nullptr);
   if (masking <= Masking::kSmithHeightDirection) return std::min(1.0, distribution->Sigma(u) / u.z);
-  const Shadowing shadowing = ShadowingOf(masking, shape);
+  const Shadowing shadowing = ShadowingOf(masking, shape.slope);
   double furnace = 0;
-  ForFacets(shape, [&](const Vec3& m, double share) {
+  ForFacets(shape.slope, [&](const Vec3& m, double share) {
     const double along = Dot(u, m);
     if (along > 0) furnace += MaskingG1(*distribution, shadowing, u, m) * along * distribution->D(m) * share / u.z;
   });

@@ -18,6 +18,7 @@ class FittedFunction {
   std::size_t channels() const { return model_.channels(); }
   // Of a model; a table has none.
   const std::vector<SlopeCoordinates>& lobe_shapes() const { return model_.lobe_shapes(); }
+  const std::vector<LobeShape>& shapes() const { return model_.shapes(); }
   // Null for a model.
   const SelReflectance* table() const { return table_ ? &*table_ : nullptr; }
 

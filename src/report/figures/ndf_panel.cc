@@ -28,10 +28,11 @@ double SlopeDensity(const NormalDistribution& distribution, const Vec3& m) {
 Vec3 NormalAt(double slope_x, double slope_y) { return Normalized(Vec3{-slope_x, -slope_y, 1.0}); }
 
 // The share of the peak at rho widths from the mean, which all lobes of slope space have in common, inverted.
-double Radius(Ndf ndf, const SlopeCoordinates& shape, double level) {
-  const SlopeCoordinates centred = {{0, 0, shape.v[2], 0, shape.v[2]}};
-  const std::unique_ptr<NormalDistribution> distribution = DistributionOf(ndf, centred, nullptr);
-  const double a = std::exp(shape.v[2]), peak = SlopeDensity(*distribution, {0, 0, 1});
+double Radius(const Lobe& lobe, const LobeShape& shape, double level) {
+  LobeShape centred = shape;
+  centred.slope = {{0, 0, shape.slope.v[2], 0, shape.slope.v[2]}};
+  const std::unique_ptr<NormalDistribution> distribution = DistributionOf(lobe, centred, nullptr);
+  const double a = std::exp(shape.slope.v[2]), peak = SlopeDensity(*distribution, {0, 0, 1});
   double low = 0, high = 100;
   for (int i = 0; i < 50; ++i) {
     const double middle = (low + high) / 2;
@@ -82,7 +83,7 @@ void FindDensity(NdfPicture* ndf) {
   const Samples& samples = data.measurement.samples;
   const SlopeCoordinates& shape = data.fitted.lobe_shapes()[0];
   const std::unique_ptr<NormalDistribution> distribution =
-      DistributionOf(data.material.model.lobes[0].ndf, shape, nullptr);
+      DistributionOf(data.material.model.lobes[0], data.fitted.shapes()[0], nullptr);
   const double peak = SlopeDensity(*distribution, NormalAt(shape.v[0], shape.v[1]));
   std::vector<double> diffuse(data.channels(), 0.0);
   if (data.material.model.diffuse != Diffuse::kNone) diffuse = data.material.Values().back();
@@ -174,11 +175,11 @@ void Draw(const NdfPicture& ndf, Canvas* canvas, const Box& content) {
     const std::array<Rgb, 3> colors = {style::kInk, style::kVermilion, style::kPurple};
     for (std::size_t lobe = 0; lobe < data.fitted.lobe_shapes().size(); ++lobe) {
       const SlopeCoordinates& coordinates = data.fitted.lobe_shapes()[lobe];
-      const Ndf kind = data.material.model.lobes[lobe].ndf;
+      const Lobe& kind = data.material.model.lobes[lobe];
       const SlopeFrame shape(coordinates);
       const Rgb color = colors[lobe % colors.size()];
       for (const double level : kLevels) {
-        const double radius = Radius(kind, coordinates, level);
+        const double radius = Radius(kind, data.fitted.shapes()[lobe], level);
         std::vector<Point> line;
         for (int k = 0; k <= 180; ++k) {
           const Point s = OnEllipse(shape, radius, k * kPi / 90);
@@ -191,7 +192,7 @@ void Draw(const NdfPicture& ndf, Canvas* canvas, const Box& content) {
       const double turn = 0.5 * std::atan2(2 * q12, q11 - q22), mean = (q11 + q22) / 2,
                    part = std::hypot((q11 - q22) / 2, q12);
       for (int k = 0; k < 2; ++k) {
-        const double length = Radius(kind, coordinates, kLevels[1]) *
+        const double length = Radius(kind, data.fitted.shapes()[lobe], kLevels[1]) *
                               std::sqrt(std::max(0.0, mean + (k == 0 ? part : -part))),
                      angle = turn + k * kPi / 2;
         const double dx = length * std::cos(angle), dy = length * std::sin(angle);
@@ -223,7 +224,7 @@ std::optional<Panel> NdfPanel(const ReportData& data) {
   double low_x = 0, high_x = 0, low_y = 0, high_y = 0;  // the normal is in the picture
   for (std::size_t lobe = 0; lobe < shapes.size(); ++lobe) {
     const SlopeFrame shape(shapes[lobe]);
-    const double reach = 1.08 * Radius(data.material.model.lobes[lobe].ndf, shapes[lobe], kLevels[2]);
+    const double reach = 1.08 * Radius(data.material.model.lobes[lobe], data.fitted.shapes()[lobe], kLevels[2]);
     const double reach_x = reach * shape.a, reach_y = reach * std::hypot(shape.b, shape.c);
     low_x = std::min(low_x, shape.slope_x - reach_x), high_x = std::max(high_x, shape.slope_x + reach_x);
     low_y = std::min(low_y, shape.slope_y - reach_y), high_y = std::max(high_y, shape.slope_y + reach_y);

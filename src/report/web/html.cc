@@ -62,10 +62,13 @@ std::string FigureHtml(const Figure& figure) {
 // What the shader of the page evaluates; other models are shown in pictures only.
 bool IsLive(const Model& model) {
   constexpr std::size_t kMostLobes = 8;  // of the shader
-  return !model.lobes.empty() && model.lobes.size() <= kMostLobes &&
-         std::all_of(model.lobes.begin(), model.lobes.end(), [](const Lobe& l) {
-           return FamilyOf(l.ndf) == NdfFamily::kGgx || FamilyOf(l.ndf) == NdfFamily::kBeckmann;
-         });
+  const auto known = [](const Lobe& l) {
+    const NdfFamily family = FamilyOf(l.ndf);
+    return (family == NdfFamily::kGgx || family == NdfFamily::kBeckmann) && l.fresnel != Fresnel::kSchlickF82 &&
+           l.fresnel != Fresnel::kCurve && l.direction == LobeDirection::kSpecular;
+  };
+  return !model.lobes.empty() && model.lobes.size() <= kMostLobes && !IsDirectional(model.diffuse) &&
+         std::all_of(model.lobes.begin(), model.lobes.end(), known);
 }
 
 std::string Number(double value, int digits) {

@@ -83,7 +83,7 @@ std::string BrdfExplorerText(const FittedBrdf& fit, const std::vector<std::strin
         prefix, tied ? "alpha_x" : "alpha_y", ShaderFamily(lobe), ShaderMasking(lobe));
     for (const char* channel : {".r", ".g", ".b"}) {
       std::vector<std::string> names;
-      const std::size_t first = FirstParameter(fit.material().model, l) + kShapeParameters;
+      const std::size_t first = FirstFresnel(fit.material().model, l);
       for (std::size_t k = 0; k < FresnelParameters(lobe.choices.fresnel); ++k) {
         names.push_back(Identifier(parameters[first + k].name) + channel);
       }

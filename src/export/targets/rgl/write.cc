@@ -122,7 +122,7 @@ WrittenFiles WriteRglTarget(const FittedBrdf& fit, const WriteContext& context) 
   const Channels channels = fit.channels();
   std::vector<std::shared_ptr<const NormalDistribution>> distributions;
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
-    distributions.push_back(DistributionOf(fit.lobes()[l].choices.ndf, fit.reflectance().lobe_shapes()[l], nullptr));
+    distributions.push_back(DistributionOf(fit.lobes()[l].choices, fit.reflectance().shapes()[l], nullptr));
   }
   if (!distributions.empty()) {
     options.normal_distribution = [distributions](const Vec3& wm) {
