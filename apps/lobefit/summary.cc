@@ -104,9 +104,9 @@ std::string Summary(const Material& material) {
   }
   if (material.verdict) {
     const Verdict& verdict = *material.verdict;
-    text += fmt::format("Verdict: {}. Typical error {:.2g} %", NameOf(VerdictChoices(), verdict.kind),
-                        100 * verdict.typical_error);
-    if (std::isfinite(verdict.noise)) text += fmt::format(", noise of the data {:.2g} %", 100 * verdict.noise);
+    text += fmt::format("Verdict: {}. Typical error {}", NameOf(VerdictChoices(), verdict.kind),
+                        PercentText(verdict.typical_error));
+    if (std::isfinite(verdict.noise)) text += fmt::format(", noise of the data {}", PercentText(verdict.noise));
     text += verdict.advice.empty() ? "\n" : "; " + verdict.advice + '\n';
   }
   text += "Root mean square error:";

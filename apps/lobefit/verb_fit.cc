@@ -55,8 +55,8 @@ int Judge(const Material& material) {
   }
   if (material.verdict && material.verdict->kind == VerdictKind::kDoesNotDescribe) {
     std::fprintf(
-        stderr, "lobefit: the model does not describe the measurement: its typical error is %.0f %%; %s\n",
-        100 * material.verdict->typical_error,
+        stderr, "lobefit: the model does not describe the measurement: its typical error is %s; %s\n",
+        PercentText(material.verdict->typical_error).c_str(),
         material.verdict->advice.empty() ? "look at the values with `lobefit info`" : material.verdict->advice.c_str());
     return kExitFit;
   }

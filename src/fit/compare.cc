@@ -24,8 +24,6 @@
 namespace lobefit {
 namespace {
 
-// Excess in mean square that is not worth a parameter: 1 % in root mean square.
-constexpr double kWorthNothing = 0.02;
 // Errors below this share of the measured values' own root mean square are rounding, and equal.
 constexpr double kRounding = 1e-6;
 
@@ -37,6 +35,7 @@ Measurement Part(const Measurement& measurement, const std::vector<std::size_t>&
   Measurement part;
   part.channels = measurement.channels;
   part.isotropic = measurement.isotropic;
+  part.sample_at_rest = measurement.sample_at_rest;
   part.format = measurement.format;
   part.source = measurement.source;
   part.samples = measurement.samples.Subset(indices);

@@ -21,6 +21,9 @@
 
 namespace lobefit {
 
+// Excess in mean square that is not worth a parameter: 1 % in root mean square.
+inline constexpr double kWorthNothing = 0.02;
+
 struct CompareOptions {
   FitOptions fit;
   // Number of folds over incident directions, at most as many as there are; 0 or 1: none.

@@ -221,7 +221,7 @@ double CostOfBlack(const Problem& problem, KernelModel kernel, ThreadPool* pool)
 
 MeasurementTraits TraitsOf(const Measurement& measurement) {
   MeasurementTraits traits;
-  traits.isotropic = measurement.isotropic;
+  traits.isotropic = measurement.isotropic && !measurement.sample_at_rest;
   traits.samples = measurement.samples.size();
   // Isotropic tables are stored with the half vector in one plane, but their samples are not in a plane of incidence.
   const std::optional<double> plane = PlaneAzimuth(measurement.samples);
@@ -262,7 +262,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   bool any_azimuth = true;
   for (const Lobe& lobe : recipe.model.lobes) any_azimuth = any_azimuth && IsRound(lobe.ndf) && !IsTilted(lobe.ndf);
   Samples spread;
-  if (measurement->isotropic && !any_azimuth) spread = SpreadOverAzimuths(measurement->samples);
+  if (measurement->isotropic && !measurement->sample_at_rest && !any_azimuth) spread = SpreadOverAzimuths(measurement->samples);
   const Samples& samples = spread.size() > 0 ? spread : measurement->samples;
   ThreadPool pool(std::max(1, options.threads));
   recipe = WithKnots(recipe, samples, measurement->channels.names, options, &pool);
@@ -352,7 +352,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         "would leave it; are these values of a sample?",
         100 * std::max(0.0, explained)));
   }
-  material.verdict = JudgeFit(problem, layout, best.u, explained, &pool);
+  material.verdict = JudgeFit(problem, layout, best.u, samples, incidences, explained, material.misfit->flagged, &pool);
   material.termination = {best.converged, uncertainty.determined() && !has_rival && !(explained < kLeastExplained),
                           best.message, best.iterations};
   material.source = {measurement->source, measurement->sha256, measurement->format, measurement->conventions};

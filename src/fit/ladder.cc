@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -20,63 +22,120 @@
 namespace lobefit {
 namespace {
 
-constexpr std::size_t kSamples = 4000, kMostFolds = 4;
-// Excess in mean square that is not worth a parameter: 1 % in root mean square, as in compare.cc.
-constexpr double kWorthNothing = 0.02;
+constexpr std::size_t kSamples = 4000, kMostFolds = 4, kStarts = 3;
+// Wavelengths that a spectrum is judged by; the shape is that of all, and descents cost the square of their number.
+constexpr std::size_t kMostChannels = 5;
 
-struct Fold {
+struct Split {
   Samples training, test;
 };
 
 struct Rung {
   Recipe recipe;
   TriedModel tried;
-  std::vector<double> mean_square;  // of each fold's test
+  std::vector<double> mean_square;      // of each fold's test
+  std::vector<ParameterValues> shapes;  // [lobe] its ellipse on the subsample
+  bool above_one = false;               // the first lobe's reflectance is at its bound
   double mean() const {
     return std::accumulate(mean_square.begin(), mean_square.end(), 0.0) / static_cast<double>(mean_square.size());
   }
 };
+
+void LiftReflectanceBounds(Recipe* recipe) {
+  const std::vector<Parameter> parameters = Parameters(recipe->model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].group == ParameterGroup::kShape || !parameters[i].per_channel) continue;
+    recipe->parameters[i].low = 0;
+    recipe->parameters[i].high = 1e12;
+  }
+}
+
+std::vector<std::size_t> SpreadChannels(std::size_t channels) {
+  const std::size_t count = std::min(channels, kMostChannels);
+  std::vector<std::size_t> spread;
+  for (std::size_t k = 0; k < count; ++k) spread.push_back((2 * k + 1) * channels / (2 * count));
+  return spread;
+}
+
+Samples SomeChannels(const Samples& samples, const std::vector<std::size_t>& indices) {
+  Samples some = samples.Subset(indices);
+  std::vector<std::vector<double>> values;
+  for (const std::size_t c : SpreadChannels(some.values.size())) values.push_back(std::move(some.values[c]));
+  some.values = std::move(values);
+  return some;
+}
+
+// The lobes' ellipses as starts of the first lobes of a recipe.
+void StartAt(const std::vector<ParameterValues>& shapes, Recipe* recipe) {
+  for (std::size_t l = 0; l < std::min(shapes.size(), recipe->model.lobes.size()); ++l) {
+    const std::size_t first = FirstParameter(recipe->model, l);
+    for (std::size_t i = 0; i < kEllipseParameters; ++i) recipe->parameters[first + i].start = shapes[l][i];
+  }
+}
 
 class Ladder {
  public:
   Ladder(const Recipe& simplest, const FitOptions& options, const Measurement& measurement)
       : simplest_(simplest),
         options_(options),
-        channels_(measurement.channels.names),
-        pool_(std::max(1, options.threads)) {
-    options_.starts = std::min<std::size_t>(options_.starts, 4);
+        pool_(std::max(1, options.threads)),
+        scaled_(simplest.model.lobes[0].fresnel == Fresnel::kNone) {
+    options_.starts = std::min(options_.starts, kStarts);
+    options_.subsample = kSamples / 4;
     const Incidences incidences = GroupByIncidence(measurement);
     const std::size_t folds = std::min(kMostFolds, incidences.wi.size());
     if (folds < 2) return;
     const std::vector<std::size_t> dealt = DealFolds(incidences.wi.size(), folds, options.seed);
     const std::vector<std::size_t> chosen = StratifiedSubsample(measurement.samples.size(), kSamples, options.seed);
-    all_ = measurement.samples.Subset(chosen);
+    for (const std::size_t c : SpreadChannels(measurement.channels.names.size()))
+      channels_.push_back(measurement.channels.names[c]);
+    all_ = SomeChannels(measurement.samples, chosen);
     for (std::size_t k = 0; k < folds; ++k) {
       std::vector<std::size_t> training, test;
       for (const std::size_t i : chosen) (dealt[incidences.group[i]] == k ? test : training).push_back(i);
       if (training.empty() || test.empty()) continue;
-      folds_.push_back({measurement.samples.Subset(training), measurement.samples.Subset(test)});
+      folds_.push_back({SomeChannels(measurement.samples, training), SomeChannels(measurement.samples, test)});
     }
   }
 
   bool CanJudge() const { return folds_.size() >= 2; }
 
-  // Judges the model and keeps it; false where it cannot be fitted.
-  bool Try(const Model& model, const std::string& name) {
-    if (!WhyNotEvaluable(model).empty()) return false;
+  // In the plane of incidence a lobe's width across it is not seen, and enters the values as a factor: with equal widths
+  // the reflectance would exceed 1. Models from here on have a free factor in place of Schlick's term.
+  void FreeTheScale() { scaled_ = true; }
+
+  // Judges the model and keeps it, searched from the ellipses of `base` where one is given; null where it cannot be
+  // fitted.
+  const Rung* Try(Model model, const std::string& name, const Rung* base = nullptr) {
     Rung rung;
     rung.recipe = simplest_;
+    rung.recipe.name = scaled_ ? name + "-scaled" : name;
+    if (scaled_) {
+      for (Lobe& lobe : model.lobes) {
+        if (lobe.fresnel == Fresnel::kSchlick) lobe.fresnel = Fresnel::kNone;
+      }
+    }
+    if (!WhyNotEvaluable(model).empty()) return nullptr;
     rung.recipe.model = model;
-    rung.recipe.name = name;
     rung.recipe.parameters = DefaultRecipe(model, name).parameters;
+    if (scaled_) LiftReflectanceBounds(&rung.recipe);
     const Recipe wanted = rung.recipe;
-    rung.tried.name = name;
+    if (base != nullptr) StartAt(base->shapes, &rung.recipe);
+    rung.tried.name = wanted.name;
     try {
       const Recipe recipe = WithKnots(rung.recipe, all_, channels_, options_, &pool_);
       const Layout layout(recipe, channels_);
       rung.tried.free_parameters = layout.size();
       const std::vector<DistinctMinimum> minima = FindMinima(Problem(all_, recipe), layout, all_, options_, &pool_);
-      if (minima.empty()) return false;
+      if (minima.empty()) return nullptr;
+      const ParameterValues values = layout.Report(minima[0].solution.u.data());
+      const std::vector<double>& reflectance = values[FirstFresnel(recipe.model, 0)];
+      rung.above_one = recipe.model.lobes[0].fresnel == Fresnel::kSchlick &&
+                       std::any_of(reflectance.begin(), reflectance.end(), [](double f0) { return f0 >= 1 - 1e-6; });
+      for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
+        const auto first = values.begin() + static_cast<std::ptrdiff_t>(FirstParameter(recipe.model, l));
+        rung.shapes.emplace_back(first, first + static_cast<std::ptrdiff_t>(kEllipseParameters));
+      }
       rung.mean_square.assign(folds_.size(), kNan);
       pool_.Run(folds_.size(), [&](std::size_t k) {
         ThreadPool alone(1);
@@ -87,21 +146,29 @@ class Ladder {
         const Solution solution = Solve(training, layout, minima[0].solution.u, finish, &alone);
         std::vector<std::vector<double>> f_r;
         ModelValues(test.kernel_samples(), layout.ToKernel(solution.u.data()), 0, test.size(), &f_r);
-        rung.mean_square[k] = SumSquares(recipe.metric, recipe.weighting, true, folds_[k].test, f_r).MeanSquare();
+        rung.mean_square[k] =
+            SumSquares(recipe.metric, recipe.noise, recipe.weighting, true, folds_[k].test, f_r).MeanSquare();
       });
     } catch (const InputError&) {
-      return false;  // fewer samples than parameters
+      return nullptr;  // fewer samples than parameters
     }
     rung.recipe = wanted;  // the whole measurement may reach further knots
-    if (!std::isfinite(rung.mean())) return false;
+    if (!std::isfinite(rung.mean())) return nullptr;
     rungs_.push_back(std::move(rung));
-    return true;
+    return &rungs_.back();
   }
 
+  const Rung& First() const { return rungs_[0]; }
   // The rung that predicts best so far.
   const Rung& Best() const {
     return *std::min_element(rungs_.begin(), rungs_.end(),
                              [](const Rung& a, const Rung& b) { return a.mean() < b.mean(); });
+  }
+
+  // Without what says that the scale is free.
+  std::string BestName() const {
+    const std::string& name = Best().recipe.name;
+    return scaled_ && name.ends_with("-scaled") ? name.substr(0, name.size() - 7) : name;
   }
 
   LadderChoice Choose() {
@@ -128,8 +195,10 @@ class Ladder {
     LadderChoice choice;
     rungs_[chosen].tried.chosen = true;
     for (const Rung& rung : rungs_) choice.tried.push_back(rung.tried);
-    choice.recipe = rungs_[chosen].recipe;
     const Rung& rung = rungs_[chosen];
+    choice.recipe = rung.recipe;
+    // Several lobes have hundreds of starts, and those of a spectrum cost most; the search was made on the subsample.
+    if (rung.shapes.size() > 1 || channels_.size() == kMostChannels) StartAt(rung.shapes, &choice.recipe);
     choice.recipe.reason = fmt::format(
         "of {} models the simplest whose error on held-out incident directions ({:.3g}) is within one standard error "
         "of "
@@ -143,9 +212,10 @@ class Ladder {
   FitOptions options_;
   std::vector<std::string> channels_;
   ThreadPool pool_;
+  bool scaled_;
   Samples all_;
-  std::vector<Fold> folds_;
-  std::vector<Rung> rungs_;
+  std::vector<Split> folds_;
+  std::deque<Rung> rungs_;  // references stay
 };
 
 // The lobe in the shape of `like`, of another family.
@@ -165,13 +235,17 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   if (!ladder.CanJudge()) return {simplest, {}};
   Model model;
   model.lobes = {{Ndf::kGgx}};
-  if (!ladder.Try(model, "ggx")) return {simplest, {}};
+  if (ladder.Try(model, "ggx") == nullptr) return {simplest, {}};
   const auto with_ndf = [&](Ndf ndf) {
     Model changed = ladder.Best().recipe.model;
     changed.lobes[0].ndf = ndf;
     return changed;
   };
   if (traits.in_plane) {
+    if (ladder.First().above_one) {
+      ladder.FreeTheScale();
+      ladder.Try(model, "ggx");
+    }
     ladder.Try(with_ndf(Ndf::kGgxTilted), "ggx-tilted");
   } else if (!traits.isotropic) {
     ladder.Try(with_ndf(Ndf::kGgxAnisotropic), "ggx-anisotropic");
@@ -182,26 +256,30 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
       InShape(shape, Ndf::kStudent, Ndf::kStudentTilted, Ndf::kStudentAnisotropic, Ndf::kStudentEllipsoid);
   const Ndf profile =
       InShape(shape, Ndf::kProfile, Ndf::kProfileTilted, Ndf::kProfileAnisotropic, Ndf::kProfileEllipsoid);
-  ladder.Try(with_ndf(student), NameOf(NdfChoices(), student));
-  ladder.Try(with_ndf(profile), NameOf(NdfChoices(), profile));
+  const std::string profile_name = NameOf(NdfChoices(), profile);
+  const Rung* const single = &ladder.Best();
+  ladder.Try(with_ndf(student), NameOf(NdfChoices(), student), single);
+  Model free;
+  free.lobes = {{profile}};
+  const Rung* const with_profile = ladder.Try(free, profile_name, single);
   Model two;
   two.lobes = {{shape}, {Ndf::kGgx}};
-  ladder.Try(two, std::string(NameOf(NdfChoices(), shape)) + "+ggx");
-  Model curve = ladder.Best().recipe.model;
-  const std::string before = ladder.Best().recipe.name;
-  for (Lobe& lobe : curve.lobes) lobe.fresnel = Fresnel::kCurve;
-  ladder.Try(curve, before + "+curve");
+  const std::string two_name = std::string(NameOf(NdfChoices(), shape)) + "+ggx";
+  const Rung* const with_two = ladder.Try(two, two_name);
+  // A free curve of the angle takes up what a tail lacks and the other way round: each with it.
+  for (auto [base, name, rung] : {std::tuple(free, profile_name, with_profile), std::tuple(two, two_name, with_two)}) {
+    for (Lobe& lobe : base.lobes) lobe.fresnel = Fresnel::kCurve;
+    if (rung != nullptr) ladder.Try(base, name + "+curve", rung);
+  }
   Model interfaced = ladder.Best().recipe.model;
-  const std::string base = ladder.Best().recipe.name;
   interfaced.diffuse = Diffuse::kInterfaced;
-  ladder.Try(interfaced, base + "+interfaced");
+  ladder.Try(interfaced, ladder.BestName() + "+interfaced", &ladder.Best());
   Model retro = ladder.Best().recipe.model;
-  const std::string lobes = ladder.Best().recipe.name;
   if (retro.lobes.size() < 3) {
     Lobe back = {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kNone};
     back.direction = LobeDirection::kRetro;
     retro.lobes.push_back(back);
-    ladder.Try(retro, lobes + "+retro");
+    ladder.Try(retro, ladder.BestName() + "+retro", &ladder.Best());
   }
   return ladder.Choose();
 }

@@ -1,5 +1,7 @@
 #include "lobefit/material/material.h"
 
+#include <fmt/format.h>
+
 namespace lobefit {
 
 ParameterValues Material::Values() const {
@@ -16,6 +18,10 @@ const std::vector<Choice<VerdictKind>>& VerdictChoices() {
       {VerdictKind::kDoesNotDescribe, "does-not-describe", "the model does not describe the data"},
   };
   return choices;
+}
+
+std::string PercentText(double share) {
+  return share <= 10 ? fmt::format("{:.2g} %", 100 * share) : std::string("over 1000 %");
 }
 
 }  // namespace lobefit

@@ -68,6 +68,8 @@ struct Verdict {
   std::string advice;        // what to try next, in words; empty: nothing
 };
 const std::vector<Choice<VerdictKind>>& VerdictChoices();
+// 0.078 as "7.8 %"; "over 1000 %" beyond.
+std::string PercentText(double share);
 
 // A model of the automatic choice, judged on incident directions that it had not seen.
 struct TriedModel {

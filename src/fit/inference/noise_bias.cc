@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -84,17 +83,8 @@ std::string BiasInWords(const NoiseBias& bias, const char* metric) {
 std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vector<double>& u,
                                           const Eigen::MatrixXd& covariance, const Samples& all,
                                           const Incidences& incidences, ThreadPool* pool) {
-  const std::vector<std::size_t> indices = SamplesForNoise(incidences);
-  if (indices.empty()) return std::nullopt;
-  const Samples samples = all.Subset(indices);
-  // Groups in the order in which they occur.
-  Incidences groups;
-  std::map<std::uint32_t, std::uint32_t> number;
-  for (const std::size_t i : indices) {
-    const auto [place, first] = number.try_emplace(incidences.group[i], static_cast<std::uint32_t>(groups.wi.size()));
-    if (first) groups.wi.push_back(incidences.wi[place->first]);
-    groups.group.push_back(place->second);
-  }
+  const auto [samples, groups] = SubsetForNoise(all, incidences);
+  if (samples.size() == 0) return std::nullopt;
   Problem problem(samples, layout.recipe());
   const KernelModel kernel = layout.ToKernel(u.data());
   problem.Reweigh(kernel, pool);

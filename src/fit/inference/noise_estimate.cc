@@ -154,22 +154,29 @@ std::optional<NoiseModel> EstimateNoise(const Samples& samples, const Incidences
   return NoiseModel{std::exp(at[0]), std::exp(at[1])};
 }
 
-std::vector<std::size_t> SamplesForNoise(const Incidences& incidences) {
+NoiseSubset SubsetForNoise(const Samples& samples, const Incidences& incidences) {
   std::vector<std::uint32_t> members(incidences.wi.size(), 0);
   for (const std::uint32_t group : incidences.group) ++members[group];
   std::size_t total = 0;
   for (const std::uint32_t count : members) total += count > kNeighbours ? count : 0;
   const std::size_t stride = (total + kMostPredicted - 1) / kMostPredicted;
-  std::vector<std::uint8_t> chosen(members.size(), 0);
+  NoiseSubset subset;
   std::size_t seen = 0;
+  constexpr std::uint32_t kLeftOut = 0xffffffff;
+  std::vector<std::uint32_t> number(members.size(), kLeftOut);
   for (std::size_t g = 0; g < members.size(); ++g) {
-    if (members[g] > kNeighbours && seen++ % stride == 0) chosen[g] = 1;
+    if (members[g] <= kNeighbours || seen++ % stride != 0) continue;
+    number[g] = static_cast<std::uint32_t>(subset.incidences.wi.size());
+    subset.incidences.wi.push_back(incidences.wi[g]);
   }
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < incidences.group.size(); ++i) {
-    if (chosen[incidences.group[i]] != 0) indices.push_back(i);
+    if (number[incidences.group[i]] == kLeftOut) continue;
+    indices.push_back(i);
+    subset.incidences.group.push_back(number[incidences.group[i]]);
   }
-  return indices;
+  subset.samples = samples.Subset(indices);
+  return subset;
 }
 
 }  // namespace lobefit

@@ -23,8 +23,12 @@ namespace lobefit {
 std::optional<NoiseModel> EstimateNoise(const Samples& samples, const Incidences& incidences,
                                         const std::vector<std::vector<double>>& f_r);
 
-// Whole incidences with neighbours, spread over all, of some 40 000 samples at most: enough for the estimate. Indices of the samples; empty where no
-// incidence has more than 6.
-std::vector<std::size_t> SamplesForNoise(const Incidences& incidences);
+// Whole incidences with neighbours, spread over all, of some 40 000 samples at most: enough for the estimate. Empty
+// where no incidence has more than 6.
+struct NoiseSubset {
+  Samples samples;
+  Incidences incidences;
+};
+NoiseSubset SubsetForNoise(const Samples& samples, const Incidences& incidences);
 
 }  // namespace lobefit

@@ -6,18 +6,18 @@
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/material/material.h"
+#include "lobefit/measurement/incidence.h"
 
 namespace lobefit {
 
-// Noise: samples that follow each other in the file and belong to one incidence lie next to each other; second
-// differences of ln m leave the noise (and what bends within two steps: an upper bound where the grid is coarse), its
-// scale by their median. The floor is the same of m among the least quarter of each channel's values.
-// Typical error: the median of |ln f / m| over values above three times the floor.
+// Noise: none told where it would be more than 30 % of the value, which is misfit between neighbours. EstimateNoise, from neighbouring residuals; at a value v its deviation is hypot(floor / v, relative).
+// Typical error: the median of |ln f / m| over values m cos_theta_i above three floors.
 // Verdict: within-noise where that median is no more than 1.2 times what the noise alone gives (0.6745 of its standard
-// deviation); else close up to 10 %, below what neighbouring goniometers differ by; rough up to 40 %, where a picture
-// is still of that material; does-not-describe beyond, or where the model explains less than a tenth of the squares. At
-// most some 200 000 samples are looked at, in runs spread over the file.
-Verdict JudgeFit(const Problem& problem, const Layout& layout, const std::vector<double>& u, double explained,
-                 ThreadPool* pool);
+// deviation), and where residuals are structured only if that noise is no more than 10 %: neighbouring residuals of a
+// model that misses a steep lobe differ by more. Else close up to 10 %, below what neighbouring goniometers differ by; rough up to 40 %, where a picture
+// is still of that material; does-not-describe beyond, or where the model explains less than a tenth of the squares.
+// At most some 200 000 samples are looked at, in runs spread over the file.
+Verdict JudgeFit(const Problem& problem, const Layout& layout, const std::vector<double>& u, const Samples& samples,
+                 const Incidences& incidences, double explained, bool structured, ThreadPool* pool);
 
 }  // namespace lobefit

@@ -189,7 +189,7 @@ Measurement ReadRgl(const InputFile& file, const ReadOptions&) {
   }
   Measurement measurement = builder.Finish();
   if (measurement.samples.size() > 0) ScaleToMeanOne(&measurement.samples.solid_angle);
-  measurement.isotropic = isotropic;
+  measurement.isotropic = measurement.sample_at_rest = isotropic;
   measurement.conventions["rgl-table-direction"] = "viewer";
   measurement.listed_side = Beam::kViewer;
   if (!tables.valid.empty()) {
