@@ -164,6 +164,27 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
   }
 }
 
+// Coefficients of a free Fresnel curve at angles that were not measured change nothing that was: they are named, and
+// the rest is determined without them.
+bool DeterminedButForCurves(const Uncertainty& uncertainty, const Layout& layout) {
+  if (uncertainty.determined()) return true;
+  const Model& model = layout.recipe().model;
+  std::vector<bool> curve(Parameters(model).size());
+  for (std::size_t l = 0; l < model.lobes.size(); ++l) {
+    if (model.lobes[l].fresnel != Fresnel::kCurve) continue;
+    const auto first = curve.begin() + static_cast<std::ptrdiff_t>(FirstFresnel(model, l));
+    std::fill_n(first, FresnelParameters(Fresnel::kCurve), true);
+  }
+  std::size_t entry = 0;
+  const std::vector<Parameter> parameters = Parameters(model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    for (std::size_t c = 0; c < (parameters[i].per_channel ? layout.channels() : 1); ++c, ++entry) {
+      if (uncertainty.undetermined[entry] && !curve[i]) return false;
+    }
+  }
+  return true;
+}
+
 Minimum Describe(const Layout& layout, const DistinctMinimum& minimum) {
   Minimum described;
   described.cost = minimum.solution.cost;
@@ -262,7 +283,8 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   bool any_azimuth = true;
   for (const Lobe& lobe : recipe.model.lobes) any_azimuth = any_azimuth && IsRound(lobe.ndf) && !IsTilted(lobe.ndf);
   Samples spread;
-  if (measurement->isotropic && !measurement->sample_at_rest && !any_azimuth) spread = SpreadOverAzimuths(measurement->samples);
+  if (measurement->isotropic && !measurement->sample_at_rest && !any_azimuth)
+    spread = SpreadOverAzimuths(measurement->samples);
   const Samples& samples = spread.size() > 0 ? spread : measurement->samples;
   ThreadPool pool(std::max(1, options.threads));
   recipe = WithKnots(recipe, samples, measurement->channels.names, options, &pool);
@@ -353,7 +375,8 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         100 * std::max(0.0, explained)));
   }
   material.verdict = JudgeFit(problem, layout, best.u, samples, incidences, explained, material.misfit->flagged, &pool);
-  material.termination = {best.converged, uncertainty.determined() && !has_rival && !(explained < kLeastExplained),
+  material.termination = {best.converged,
+                          DeterminedButForCurves(uncertainty, layout) && !has_rival && !(explained < kLeastExplained),
                           best.message, best.iterations};
   material.source = {measurement->source, measurement->sha256, measurement->format, measurement->conventions};
   material.recipe_name = recipe.name;

@@ -22,7 +22,7 @@
 namespace lobefit {
 namespace {
 
-constexpr std::size_t kSamples = 4000, kMostFolds = 4, kStarts = 3;
+constexpr std::size_t kSamples = 4000, kMostFolds = 4, kStarts = 4;
 // Wavelengths that a spectrum is judged by; the shape is that of all, and descents cost the square of their number.
 constexpr std::size_t kMostChannels = 5;
 
@@ -165,6 +165,16 @@ class Ladder {
                              [](const Rung& a, const Rung& b) { return a.mean() < b.mean(); });
   }
 
+  // The one with the fewest parameters that predicts as well, but for what is worth nothing.
+  const Rung& Simplest() const {
+    const Rung* simplest = &Best();
+    const double most = simplest->mean() * (1 + kWorthNothing);
+    for (const Rung& rung : rungs_) {
+      if (rung.mean() <= most && rung.tried.free_parameters < simplest->tried.free_parameters) simplest = &rung;
+    }
+    return *simplest;
+  }
+
   // Without what says that the scale is free.
   std::string BestName() const {
     const std::string& name = Best().recipe.name;
@@ -251,17 +261,16 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
     ladder.Try(with_ndf(Ndf::kGgxAnisotropic), "ggx-anisotropic");
     ladder.Try(with_ndf(Ndf::kEllipsoid), "ellipsoid");
   }
-  const Ndf shape = ladder.Best().recipe.model.lobes[0].ndf;
+  const Ndf shape = ladder.Simplest().recipe.model.lobes[0].ndf;
   const Ndf student =
       InShape(shape, Ndf::kStudent, Ndf::kStudentTilted, Ndf::kStudentAnisotropic, Ndf::kStudentEllipsoid);
   const Ndf profile =
       InShape(shape, Ndf::kProfile, Ndf::kProfileTilted, Ndf::kProfileAnisotropic, Ndf::kProfileEllipsoid);
   const std::string profile_name = NameOf(NdfChoices(), profile);
-  const Rung* const single = &ladder.Best();
-  ladder.Try(with_ndf(student), NameOf(NdfChoices(), student), single);
+  ladder.Try(with_ndf(student), NameOf(NdfChoices(), student));
   Model free;
   free.lobes = {{profile}};
-  const Rung* const with_profile = ladder.Try(free, profile_name, single);
+  const Rung* const with_profile = ladder.Try(free, profile_name);
   Model two;
   two.lobes = {{shape}, {Ndf::kGgx}};
   const std::string two_name = std::string(NameOf(NdfChoices(), shape)) + "+ggx";

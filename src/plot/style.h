@@ -21,6 +21,8 @@ inline constexpr Rgb kBlue = {0, 103, 168};
 inline constexpr Rgb kOrange = {214, 143, 0};
 inline constexpr Rgb kPurple = {178, 92, 143};
 inline constexpr Rgb kWarning = {166, 66, 0};
+inline constexpr Rgb kAmber = {138, 90, 0};  // white text stands out from it by 5.9 to 1
+inline constexpr Rgb kRed = {176, 30, 30};
 inline constexpr Rgb kWarningShade = {253, 243, 233};
 
 // Sizes in page units; the smallest stays legible at half scale.

@@ -17,7 +17,7 @@ TEST_F(FitVerb, WritesADocumentAPictureAndAPage) {
   // The plot in characters is for terminals.
   EXPECT_THAT(result.out, testing::Not(testing::HasSubstr("Worst slice")));
   EXPECT_THAT(result.out, testing::HasSubstr("theta_z_deg"));
-  EXPECT_THAT(result.out, testing::HasSubstr("because the samples leave the plane of incidence"));
+  EXPECT_THAT(result.out, testing::HasSubstr("the simplest whose error on held-out incident directions"));
   EXPECT_TRUE(FollowsSchema(ReadWholeFile(folder_ / "brushed_metal.material.json")));
   EXPECT_EQ(ReadWholeFile(folder_ / "brushed_metal.report.png").substr(0, 8), "\x89PNG\r\n\x1a\n");
 }

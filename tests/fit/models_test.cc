@@ -92,7 +92,8 @@ TEST_P(EveryModel, IsFoundAgain) {
   const Model model = EveryChoice()[GetParam()];
   const SyntheticCase truth = TruthOf(model);
   GoniometerLayout layout = StandardLayout();
-  layout.polar_angles = {0.1, 0.4, 0.7, 1.0, 1.2};
+  // The last coefficient of a curve acts at grazing angles alone.
+  layout.polar_angles = {0.1, 0.4, 0.7, 1.0, model.lobes[0].fresnel == Fresnel::kCurve ? 1.35 : 1.2};
   layout.azimuths = {0, 1.1};
   layout.detector_step = DegreesToRadians(12);
   Measurement measurement = Synthetic(truth, layout, 0, 1);

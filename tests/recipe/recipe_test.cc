@@ -101,10 +101,13 @@ INSTANTIATE_TEST_SUITE_P(
     All, BadRecipe,
     testing::Values(
         BadCase{"[[lobe]]\nnfd = \"ggx\"\n",
-                "r.toml:2: unknown key 'nfd' of a lobe (did you mean 'ndf'?); allowed: ndf, masking, fresnel, metal"},
+                "r.toml:2: unknown key 'nfd' of a lobe (did you mean 'ndf'?); allowed: ndf, masking, fresnel, metal, "
+                "direction, knots"},
         BadCase{"[[lobe]]\nndf = \"ggxx\"\n",
                 "r.toml:2: ndf = 'ggxx' is unknown (did you mean 'ggx'?); allowed: ggx, ggx-tilted, ggx-anisotropic, "
-                "ellipsoid, beckmann, beckmann-anisotropic, beckmann-off-center, kagiwada-kalaba, spherical-gaussian"},
+                "ellipsoid, beckmann, beckmann-anisotropic, beckmann-off-center, kagiwada-kalaba, spherical-gaussian, "
+                "profile, profile-tilted, profile-anisotropic, profile-ellipsoid, student, student-tilted, "
+                "student-anisotropic, student-ellipsoid"},
         BadCase{"[[lobe]]\nmasking = \"v-cavity\"\n",
                 "r.toml:1: masking v-cavity needs a lobe about the normal, ellipsoid may tilt; use ndf ggx-anisotropic "
                 "or beckmann-anisotropic, or a Smith masking"},

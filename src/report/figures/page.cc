@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "lobefit/material/badge.h"
 #include "lobefit/plot/layout.h"
 #include "lobefit/plot/style.h"
 
@@ -61,11 +62,8 @@ void DrawHeader(Canvas* canvas, const ReportData& data) {
   const Termination& end = material.termination;
   const double right = kPageWidth - kMargin;
   // The verdict first, so that the title knows its room.
-  const bool good = end.converged && end.determined;
-  const std::string verdict = !end.converged    ? "not converged"
-                              : !end.determined ? "converged, not fully determined"
-                                                : "converged";
-  const Rgb color = good ? style::kGreen : style::kWarning;
+  const auto [mark, verdict] = BadgeOf(material);
+  const Rgb color = mark == BadgeMark::kGood ? style::kGreen : mark == BadgeMark::kRough ? style::kAmber : style::kRed;
   TextStyle chip = {
       .size = style::kBodySize, .color = {255, 255, 255}, .weight = Weight::kBold, .baseline = Baseline::kMiddle};
   const double chip_width = canvas->TextWidth(verdict, chip) + 24;

@@ -11,6 +11,7 @@
 #include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
+#include "lobefit/material/badge.h"
 #include "lobefit/plot/png.h"
 #include "lobefit/report/figures/page.h"
 #include "lobefit/report/web/assets.h"
@@ -112,7 +113,7 @@ std::string PolicyHash(std::string_view text) { return "sha256-" + Base64(Sha256
 std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels, const std::shared_ptr<Fonts>& fonts) {
   const Material& material = data.material;
   const std::string file = material.source.file.empty() ? data.measurement.source : material.source.file;
-  const bool converged = material.termination.converged, good = converged && material.termination.determined;
+  const Badge badge = BadgeOf(material);
   const bool live = IsLive(material.model);
   std::string wide, narrow;
   for (const Figure& figure : DrawFigures(panels, fonts, 1500000)) (figure.wide ? wide : narrow) += FigureHtml(figure);
@@ -126,10 +127,10 @@ std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels,
                                         std::string(kLobeGlsl), std::string(kPageGlsl)},
                                        "")},
                        {"data", live ? DataJson(data) : ""},
-                       {"verdict", !converged ? "not converged"
-                                   : good     ? "converged"
-                                              : "converged, not fully determined"},
-                       {"verdict-class", good ? "" : "bad"},
+                       {"verdict", badge.words},
+                       {"verdict-class", badge.mark == BadgeMark::kGood    ? ""
+                                         : badge.mark == BadgeMark::kRough ? "rough"
+                                                                           : "bad"},
                        {"model", MarkupText(ModelWords(material.model))},
                        {"parameters", ParameterTable(data)},
                        {"wide-figures", wide},

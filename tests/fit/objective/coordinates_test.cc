@@ -46,7 +46,7 @@ void ExpectJacobianOfShape(const Layout& layout, const std::vector<double>& u) {
     down[k] -= 1e-6;
     const KernelModel high = layout.ToKernel(up.data()), low = layout.ToKernel(down.data());
     for (std::size_t j = 0; j < 5; ++j) {
-      const double difference = (high.lobes[0].shape.v[j] - low.lobes[0].shape.v[j]) / 2e-6;
+      const double difference = (high.lobes[0].shape.slope.v[j] - low.lobes[0].shape.slope.v[j]) / 2e-6;
       EXPECT_NEAR(kernel.lobes[0].jacobian[j * kernel.lobes[0].columns + k], difference, 1e-8) << j << " " << k;
     }
   }
