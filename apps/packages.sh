@@ -9,6 +9,7 @@ test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev libvalijson-dev
   clang-14 clang-format-14 libclang-rt-14-dev
   python3 chromium glslang-tools
+  slurmctld slurmd slurm-client munge
 )
 
 # install_missing PACKAGE...: installs those that are not there yet, as root or with sudo.

@@ -30,6 +30,7 @@ struct Verb {
 constexpr Verb kVerbs[] = {
     {"info", "describe a measurement file", SetUpInfo},
     {"fit", "fit a reflectance model to a measurement file", SetUpFit},
+    {"batch", "fit many files, here or as shards on a cluster; goes on where it was", SetUpBatch},
     {"compare", "fit several recipes, judge them on held-out directions, recommend one", SetUpCompare},
     {"report", "draw the report of a fitted material against its measurement again", SetUpReport},
     {"convert", "write a measurement file in another format, and say what was lost", SetUpConvert},

@@ -49,13 +49,23 @@ std::string SeriesName(const std::vector<std::string>& files) {
   return name.empty() || name == "." ? "series" : name;
 }
 
-Measurement MeasurementOptions::Load(const std::vector<std::string>& files) const {
+ReadOptions MeasurementOptions::Read() const {
   ReadOptions options;
   options.channels = channels_;
   for (std::size_t i = 0; i < words_.size(); ++i) {
     if (!words_[i].empty()) ReadOptionTable()[i].set(&options, words_[i]);
   }
-  Measurement measurement = ReadSeries(files, options);
+  return options;
+}
+
+void MeasurementOptions::Check() const {
+  Read();
+  if (!theta_i_.empty()) ParseAngleRange(theta_i_, "--theta-i");
+  if (!phi_i_.empty()) ParseAngleRange(phi_i_, "--phi-i");
+}
+
+Measurement MeasurementOptions::Load(const std::vector<std::string>& files) const {
+  Measurement measurement = ReadSeries(files, Read());
   for (std::size_t i = 0; i < words_.size(); ++i) {
     if (!words_[i].empty()) CheckOptionOf(ReadOptionTable()[i], measurement.format, files.front());
   }

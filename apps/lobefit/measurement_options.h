@@ -28,10 +28,13 @@ class MeasurementOptions {
   Measurement Load(const std::vector<std::string>& files) const;
   // The same for verbs whose result stands or falls with what the values are: refuses a file that does not say it.
   Measurement LoadStated(const std::vector<std::string>& files) const;
+  // Throws UsageError for words that no file can make valid.
+  void Check() const;
   // Keeps the chosen incident directions and channels.
   void Select(Measurement* measurement) const;
 
  private:
+  ReadOptions Read() const;
   void SelectDirections(Measurement* measurement) const;
 
   std::string theta_i_, phi_i_, channels_;

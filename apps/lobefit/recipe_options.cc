@@ -112,6 +112,12 @@ Recipe RecipeOptions::Choose(const Measurement& measurement) const {
   return recipe;
 }
 
+std::string RecipeOptions::Resolved() const {
+  Recipe recipe = IsAutomatic() ? Recipe() : LoadRecipe(recipe_);
+  overrides_.Apply(&recipe);
+  return IsAutomatic() ? "recipe = auto\n" : ToToml(recipe);
+}
+
 void FittedModel::AddTo(CLI::App* app) {
   const std::string group = "What to fit";
   app->add_option("--recipe", recipe_, "a recipe by name or a .toml file (default: the truth's model)")->group(group);

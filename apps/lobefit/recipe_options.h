@@ -33,6 +33,9 @@ class RecipeOptions {
   // Throws UsageError and InputError.
   Recipe Choose(const Measurement& measurement) const;
   const RecipeOverrides& overrides() const { return overrides_; }
+  // The recipe as text, or that it is chosen by the measurement: what decides the fit beside the other options. Throws
+  // as Choose.
+  std::string Resolved() const;
 
  private:
   std::string recipe_ = "auto";

@@ -20,6 +20,7 @@ struct CommonOptions {
 // Adds options to `app` and returns what runs the verb; the result is the exit code.
 using VerbSetup = std::function<int()> (*)(CLI::App* app, CommonOptions* common);
 
+std::function<int()> SetUpBatch(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpEval(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpCompare(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpConvert(CLI::App* app, CommonOptions* common);

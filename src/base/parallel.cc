@@ -2,13 +2,19 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <condition_variable>
+#include <cstdlib>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include <sched.h>
+
+#include "lobefit/base/control_group.h"
+#include "lobefit/base/text.h"
 
 namespace lobefit {
 
@@ -52,8 +58,14 @@ struct ThreadPool::State {
 int HardwareThreads() {
   cpu_set_t set;
   CPU_ZERO(&set);
-  if (sched_getaffinity(0, sizeof(set), &set) == 0) return std::max(1, CPU_COUNT(&set));
-  return std::max(1U, std::thread::hardware_concurrency());
+  double threads = std::max(1U, std::thread::hardware_concurrency());
+  if (sched_getaffinity(0, sizeof(set), &set) == 0) threads = CPU_COUNT(&set);
+  if (const std::optional<double> quota = ControlGroupProcessors()) threads = std::min(threads, std::ceil(*quota));
+  // Slurm without control groups lets a job see every processor of its node.
+  const char* slurm = std::getenv("SLURM_CPUS_PER_TASK");
+  const std::optional<long long> share = slurm != nullptr ? ParseInteger(slurm) : std::nullopt;
+  if (share && *share > 0) threads = std::min(threads, static_cast<double>(*share));
+  return std::max(1, static_cast<int>(threads));
 }
 
 ThreadPool::ThreadPool(int threads) : state_(new State) {

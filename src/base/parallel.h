@@ -7,7 +7,7 @@
 
 namespace lobefit {
 
-// Number of processors that this process may use, at least 1.
+// Processors that this process may use: the least of affinity, control groups and SLURM_CPUS_PER_TASK; at least 1.
 int HardwareThreads();
 
 // Calls work(piece) once for each piece in [0, pieces), on at most `threads` threads (the caller is one of them). The

@@ -1,7 +1,6 @@
 #include "lobefit/report/report.h"
 
 #include <memory>
-#include <utility>
 
 #include "lobefit/base/file.h"
 #include "lobefit/base/parallel.h"
@@ -11,23 +10,6 @@
 #include "lobefit/report/web/html.h"
 
 namespace lobefit {
-
-const std::vector<PanelMaker>& PanelMakers() {
-  static const std::vector<PanelMaker> makers = {CurvesPanel, LobesPanel,     ParametersPanel, QualityPanel,
-                                                 SpherePanel, EnergyPanel,    MapsPanel,       NdfPanel,
-                                                 BurleyPanel, ResidualsPanel, CorrelationPanel};
-  return makers;
-}
-
-std::vector<Panel> MakePanels(const ReportData& data) {
-  std::vector<std::optional<Panel>> made(PanelMakers().size());
-  ParallelFor(made.size(), data.threads, [&](std::size_t k) { made[k] = PanelMakers()[k](data); });
-  std::vector<Panel> panels;
-  for (std::optional<Panel>& panel : made) {
-    if (panel) panels.push_back(std::move(*panel));
-  }
-  return panels;
-}
 
 void WriteReport(const Material& material, const Measurement& measurement, const ReportPaths& paths,
                  const ReportOptions& options) {

@@ -414,7 +414,7 @@ std::optional<Panel> ComparedSpheresPanel(const Compared& compared) {
   const ReportData& first = compared.first();
   const ChannelColor to_color(first.measurement.channels);
   const auto balls = std::make_shared<std::vector<Ball>>();
-  if (std::optional<LitSphere> measured = LightMeasured(first, to_color, kBallPixels))
+  if (std::optional<LitSphere> measured = LightMeasured(first.measurement, to_color, kBallPixels))
     balls->push_back({std::move(*measured), "measured", style::kFaint});
   for (const Compared::Entry& entry : compared.models)
     balls->push_back({LightFitted(*entry.data, to_color, kBallPixels), entry.label, entry.color});

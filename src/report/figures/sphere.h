@@ -24,10 +24,12 @@ struct LitSphere {
 // f_r of one pair of directions; false where it is not known.
 using BrdfFunction = std::function<bool(const Vec3& wi, const Vec3& wo, double* f_r)>;
 
+// Towards the light; the viewer is at +z.
+Vec3 SphereLight();
 LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, std::size_t channels, int size);
 LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int size);
 // The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
-std::optional<LitSphere> LightMeasured(const ReportData& data, const ChannelColor& to_color, int size);
+std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size);
 
 // Under an analytic sky with a low sun, 104 pixels wide. Light comes from `count` directions: a third
 // drawn from the density of slopes of `lobe`, a third by the cosine, a third around the sun, weighted by the balance

@@ -130,8 +130,10 @@ void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
 
 }  // namespace
 
+Vec3 SphereLight() { return Normalized(Vec3{-0.45, 0.6, 0.75}); }
+
 LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
-  const Vec3 light = Normalized(Vec3{-0.45, 0.6, 0.75}), view = {0, 0, 1};
+  const Vec3 light = SphereLight(), view = {0, 0, 1};
   const std::size_t pixels = PixelIndex(0, size, size);
   LitSphere sphere = {size, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
   std::vector<double> f_r(channels);
@@ -217,12 +219,12 @@ LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int 
   return LightSphere(fitted, to_color, data.channels(), size);
 }
 
-std::optional<LitSphere> LightMeasured(const ReportData& data, const ChannelColor& to_color, int size) {
-  if (!data.measurement.isotropic) return std::nullopt;
-  const IsotropicLookup lookup(data.measurement);
+std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size) {
+  if (!measurement.isotropic) return std::nullopt;
+  const IsotropicLookup lookup(measurement);
   LitSphere sphere =
       LightSphere([&lookup](const Vec3& wi, const Vec3& wo, double* f_r) { return lookup.Find(wi, wo, f_r); }, to_color,
-                  data.channels(), size);
+                  measurement.channels.size(), size);
   if (!IsCovered(sphere)) return std::nullopt;
   return sphere;
 }

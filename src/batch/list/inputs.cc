@@ -1,0 +1,228 @@
+#include "lobefit/batch/list/inputs.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iostream>
+#include <string_view>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+#include "lobefit/io/read.h"
+#include "lobefit/io/text/decoded_file.h"
+
+namespace lobefit {
+namespace {
+
+using Path = std::filesystem::path;
+
+std::uint64_t SizeOf(const Path& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  return error ? 0 : bytes;
+}
+
+// Of a large table the beginning tells that it is no text: a zero, and no byte order mark of UTF-16.
+bool IsBinary(const Path& path) {
+  std::array<char, 512> head = {};
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), head.size());
+  const std::string_view bytes(head.data(), static_cast<std::size_t>(file.gcount()));
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) return false;
+  return bytes.find('\0') != std::string_view::npos;
+}
+
+class Gatherer {
+ public:
+  Gatherer(const OptionWords& common, const ManifestNames& names, const Path& out, const WorkList& known,
+           bool only_input)
+      : common_(common), names_(names), out_(std::filesystem::weakly_canonical(out)), only_input_(only_input) {
+    for (const Task& task : known.tasks) known_[task.path.string()] = task.bytes;
+  }
+
+  void Add(const std::string& input) {
+    std::error_code error;
+    if (input == "-") return AddStandardInput();
+    if (std::filesystem::is_directory(input, error)) return AddFolder(input);
+    if (!std::filesystem::exists(input, error)) {
+      throw InputError(
+          fmt::format("{}: is not there; name a file, a folder, a manifest, or - for names on standard "
+                      "input",
+                      Excerpt(input, 200)));
+    }
+    if (!std::filesystem::is_regular_file(input, error)) {
+      throw InputError(
+          fmt::format("{}: is a pipe or device; a batch goes on after an interruption, so that it needs files",
+                      Excerpt(input, 200)));
+    }
+    if (IsManifest(input)) return AddManifest(input);
+    AddFile(input, fmt::format("argument '{}'", Excerpt(input, 200)));
+  }
+
+  Inputs Finish() {
+    if (gathered_.list.tasks.empty()) {
+      throw InputError(fmt::format("there is nothing to fit: no file of a known format was found{}",
+                                   gathered_.skipped > 0 ? fmt::format(" among {}", gathered_.skipped) : ""));
+    }
+    Check();
+    // Columns that only some manifests have are empty for the others.
+    for (Task& task : gathered_.list.tasks) task.extra.resize(gathered_.list.extra_columns.size());
+    SortBySize(&gathered_.list);
+    return std::move(gathered_);
+  }
+
+ private:
+  // What cannot be read is a measurement that fails, while the others go on.
+  bool IsManifest(const std::string& input) const {
+    if (IsBinary(input)) return false;
+    try {
+      const DecodedFile file(input);
+      // Alone it can only have been meant as a list; among others it is a measurement that fails.
+      if (file.bytes().empty() && only_input_) return true;
+      return LooksLikeManifest(file.bytes(), names_);
+    } catch (const InputError&) {
+      return false;
+    }
+  }
+
+  void Append(Task task) {
+    for (const auto& [name, words] : common_) task.options.emplace(name, words);
+    task.bytes = SizeOf(task.path);
+    gathered_.list.tasks.push_back(std::move(task));
+  }
+
+  void AddFile(const std::string& file, const std::string& place) {
+    Append({IdOf(file), file, std::filesystem::absolute(file).lexically_normal(), 0, {}, "", {}, place});
+  }
+
+  void AddStandardInput() {
+    std::string line;
+    for (std::size_t number = 1; std::getline(std::cin, line); ++number) {
+      const std::string name(Trim(line));
+      if (!name.empty()) AddFile(name, fmt::format("standard input, line {}", number));
+    }
+  }
+
+  void AddManifest(const std::string& input) {
+    const DecodedFile file(input);
+    const WorkList rows = ParseManifest(file.bytes(), input, names_);
+    std::vector<std::size_t> to;
+    std::vector<std::string>& columns = gathered_.list.extra_columns;
+    for (const std::string& name : rows.extra_columns) {
+      to.push_back(static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin()));
+      if (to.back() == columns.size()) columns.push_back(name);
+    }
+    for (Task task : rows.tasks) {
+      std::vector<std::string> extra(columns.size());
+      for (std::size_t i = 0; i < to.size(); ++i) extra[to[i]] = task.extra[i];
+      task.extra = extra;
+      Append(std::move(task));
+    }
+  }
+
+  bool IsMeasurement(const Path& path) const {
+    const auto known = known_.find(std::filesystem::absolute(path).lexically_normal().string());
+    if (known != known_.end() && known->second == SizeOf(path)) return true;
+    try {
+      const DecodedFile file(path);
+      RecogniseFormat({path, file.bytes()});
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  }
+
+  void AddFolder(const Path& folder) {
+    std::vector<Path> files;
+    std::filesystem::recursive_directory_iterator walk(folder);
+    for (; walk != std::filesystem::recursive_directory_iterator(); ++walk) {
+      const bool hidden = walk->path().filename().string().starts_with(".");
+      const bool ours = walk->is_directory() && std::filesystem::weakly_canonical(walk->path()) == out_;
+      if (hidden || ours) walk.disable_recursion_pending();
+      if (!hidden && walk->is_regular_file()) files.push_back(walk->path());
+    }
+    std::sort(files.begin(), files.end());
+    for (const Path& path : files) {
+      const std::string file = path.lexically_relative(folder).generic_string();
+      if (!IsMeasurement(path)) {
+        constexpr std::size_t kNamed = 5;
+        if (gathered_.skipped++ < kNamed) gathered_.some_skipped.push_back(path.string());
+        continue;
+      }
+      Append({IdOf(file), file, std::filesystem::absolute(path).lexically_normal(), 0, {}, "", {}, path.string()});
+    }
+  }
+
+  static void CheckId(const Task& task) {
+    constexpr std::size_t kMost = 200;  // of a component; the endings of results and temporary names come to it
+    const Path id(task.id);
+    bool fine = !task.id.empty() && id.is_relative() && id.lexically_normal().string() == task.id &&
+                id.has_filename() &&
+                std::none_of(task.id.begin(), task.id.end(), [](char c) { return c >= 0 && c < ' '; });
+    for (const Path& part : id) fine = fine && part != ".." && part != "." && part.string().size() <= kMost;
+    if (!fine) {
+      throw InputError(
+          fmt::format("{}: id '{}' is no relative path with components of at most {} bytes; results are "
+                      "named by it",
+                      task.place, Excerpt(task.id, 80), kMost));
+    }
+  }
+
+  void Check() const {
+    std::unordered_map<std::string, const Task*> ids, files;
+    for (const Task& task : gathered_.list.tasks) {
+      CheckId(task);
+      const auto [same_file, new_file] = files.emplace(task.path.string(), &task);
+      if (!new_file && same_file->second->options == task.options) {
+        throw InputError(
+            fmt::format("{}: '{}' is listed already ({}); remove one, or give them different options and "
+                        "ids",
+                        task.place, Excerpt(task.file, 200), same_file->second->place));
+      }
+      const auto [same_id, new_id] = ids.emplace(task.id, &task);
+      if (!new_id) {
+        throw InputError(
+            fmt::format("{}: the id '{}' of '{}' is that of '{}' too ({}); give each an id of its own in a "
+                        "manifest",
+                        task.place, Excerpt(task.id, 80), Excerpt(task.file, 200), Excerpt(same_id->second->file, 200),
+                        same_id->second->place));
+      }
+    }
+  }
+
+  const OptionWords& common_;
+  const ManifestNames& names_;
+  const Path out_;
+  const bool only_input_;
+  std::unordered_map<std::string, std::uint64_t> known_;  // sizes by path
+  Inputs gathered_;
+};
+
+}  // namespace
+
+Inputs GatherInputs(const std::vector<std::string>& inputs, const OptionWords& common, const ManifestNames& names,
+                    const Path& out, const WorkList& known) {
+  Gatherer gatherer(common, names, out, known, inputs.size() == 1);
+  for (const std::string& input : inputs) gatherer.Add(input);
+  return gatherer.Finish();
+}
+
+void SetSettings(const std::function<std::string(const OptionWords&)>& settings_of, WorkList* list) {
+  std::map<OptionWords, std::string> known;
+  for (Task& task : list->tasks) {
+    auto found = known.find(task.options);
+    if (found == known.end()) {
+      try {
+        found = known.emplace(task.options, settings_of(task.options)).first;
+      } catch (const Error& error) {
+        throw Error(error.exit_code(), fmt::format("{}: {}", task.place, error.what()));
+      }
+    }
+    task.settings = found->second;
+  }
+}
+
+}  // namespace lobefit

@@ -1,0 +1,77 @@
+#include "lobefit/batch/results/sphere_picture.h"
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+#include "lobefit/math/vec.h"
+#include "lobefit/plot/color.h"
+#include "lobefit/plot/png.h"
+#include "lobefit/report/figures/fitted_function.h"
+#include "lobefit/report/figures/isotropic_lookup.h"
+#include "lobefit/report/figures/sphere.h"
+
+namespace lobefit {
+namespace {
+
+constexpr int kSize = 64;
+
+// The samples whose half angle is near that of the spheres' light and view, which is the same all over a sphere: they
+// decide what is seen, and are a few hundredths of a table.
+Measurement NearLight(const Measurement& measurement) {
+  const double cos_theta_d = std::sqrt((1 + Dot(SphereLight(), Vec3{0, 0, 1})) / 2);
+  const double theta_d = std::acos(cos_theta_d), reach = DegreesToRadians(2.5);
+  const double nearest = std::cos(2 * (theta_d - reach)), farthest = std::cos(2 * (theta_d + reach));
+  const Samples& samples = measurement.samples;
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double cosine =
+        samples.wi_x[i] * samples.wo_x[i] + samples.wi_y[i] * samples.wo_y[i] + samples.wi_z[i] * samples.wo_z[i];
+    if (cosine <= nearest && cosine >= farthest) indices.push_back(i);
+  }
+  Measurement near;
+  near.channels = measurement.channels;
+  near.isotropic = measurement.isotropic;
+  near.samples = samples.Subset(indices);
+  return near;
+}
+
+void Paint(const LitSphere& sphere, double exposure, int left, cv::Mat* picture) {
+  for (int row = 0; row < kSize; ++row) {
+    for (int column = 0; column < kSize; ++column) {
+      const std::size_t pixel = static_cast<std::size_t>(row) * kSize + static_cast<std::size_t>(column);
+      const double x = column + 0.5 - kSize / 2.0, y = row + 0.5 - kSize / 2.0;
+      cv::Vec3b& at = picture->at<cv::Vec3b>(row, left + column);
+      at = {255, 255, 255};
+      if (x * x + y * y > kSize * kSize / 4.0) continue;
+      at = {150, 158, 167};
+      if (sphere.known[pixel] == 0) continue;
+      const Rgb color = ToScreen(sphere.color[pixel], exposure);
+      at = {color.r, color.g, color.b};
+    }
+  }
+}
+
+}  // namespace
+
+SpherePicture DrawSpheres(const Material& material, const Measurement& measurement) {
+  if (material.sel) return {};
+  const FittedFunction function(material);
+  const ChannelColor to_color(measurement.channels);
+  const auto evaluate = [&](const Vec3& wi, const Vec3& wo, double* f_r) {
+    function.Evaluate(wi, wo, f_r);
+    return true;
+  };
+  const LitSphere fitted = LightSphere(evaluate, to_color, function.channels(), kSize);
+  std::optional<LitSphere> measured;
+  if (measurement.isotropic) measured = LightMeasured(NearLight(measurement), to_color, kSize);
+  const double exposure = SphereExposure(measured ? *measured : fitted);
+  cv::Mat picture(kSize, measured ? 2 * kSize : kSize, CV_8UC3);
+  if (measured) Paint(*measured, exposure, 0, &picture);
+  Paint(fitted, exposure, measured ? kSize : 0, &picture);
+  return {EncodePng(picture, 0), measured.has_value()};
+}
+
+}  // namespace lobefit

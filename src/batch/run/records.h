@@ -1,0 +1,88 @@
+// What the segments of a batch say: which tasks are done, how, and which were begun by a process that died.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace lobefit {
+
+enum class TaskStatus {
+  kFitted,
+  kDoubtful,  // there is a document, but it did not converge, is not determined or does not describe its data
+  kFailed,    // there is none; the message says why
+  kCrashed    // its process died twice
+};
+std::string NameOf(TaskStatus status);
+
+// What a file looked like when it was read: where nothing of it changed, its content is taken to be the same.
+struct FileStamp {
+  std::uint64_t bytes = 0;
+  std::int64_t modified_ns = 0, changed_ns = 0;
+
+  bool operator==(const FileStamp&) const = default;
+};
+// All zero where there is no such file.
+FileStamp StampOf(const std::filesystem::path& path);
+
+// A task that is done: one line of a segment.
+struct DoneRecord {
+  std::string id, key, settings, sha256;
+  FileStamp stamp;
+  TaskStatus status = TaskStatus::kFailed;
+  int exit_code = 0;  // of `lobefit fit`
+  std::string message;
+  std::uint64_t document_bytes = 0;  // 0: there is no document
+  double at = 0, seconds = 0;        // end, since 1970; duration
+  double peak_mb = 0;                // largest memory of the process so far
+  int threads = 1;
+  // The columns of the result as a JSON object; empty where there is no document. Lies in the text of the segment.
+  std::string_view row;
+  std::size_t segment = 0;  // index into Records::segments
+};
+
+// A task that was begun.
+struct StartRecord {
+  std::string id;
+  double at = 0;
+  std::size_t segment = 0;
+};
+
+struct Segment {
+  std::string name, host;
+  bool is_running = false;  // its process is known to
+  std::shared_ptr<const std::string> text;
+  std::size_t lines_lost = 0;  // cut short by a death or a full disk
+};
+
+struct Records {
+  std::vector<Segment> segments;  // by name
+  std::vector<DoneRecord> done;   // in the order of segments and lines
+  // Begun but not done, by processes that are not known to run still.
+  std::unordered_map<std::string, std::vector<StartRecord>> deaths;  // by id
+};
+
+// Reads every segment below out/segments, on `threads` threads. Lines that are not whole are counted and passed over.
+Records ReadRecords(const std::filesystem::path& out, int threads);
+
+// The lines of a segment.
+std::string ToLine(const StartRecord& start);
+std::string ToLine(const DoneRecord& done);
+// Of a task that was begun and is left to another time, since its results cannot be written.
+std::string LeftLine(const std::string& id);
+// The record of one line; its `row` lies in `line`. Throws an exception for a line that is not whole.
+DoneRecord DoneFromLine(std::string_view line);
+
+// Seconds since 1970.
+double Now();
+
+// The record that counts of each task that is done with the settings wanted: of several with one key the best one, else
+// the last one. `settings_of` gives a task's settings by id; ids that it does not know are left out.
+std::unordered_map<std::string, const DoneRecord*> LatestDone(
+    const Records& records, const std::unordered_map<std::string, std::string>& settings_of);
+
+}  // namespace lobefit

@@ -1,0 +1,79 @@
+// Deaths at random moments, and a disk that fills up: nothing is lost, nothing is there twice.
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+
+#include "tests/batch/batch_test.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace lobefit {
+namespace {
+
+using testing::HasSubstr;
+
+using BatchKill = BatchTest;
+
+TEST_F(BatchKill, FiftyKillsLoseNothing) {
+  MakeFiles(60);
+  MakeBrokenFiles();
+  const std::string batch = "ls data/* | lobefit batch - --recipe ggx --starts 200 --out ";
+  ASSERT_EQ(Shell(batch + "whole").exit_code, 4);
+  std::mt19937 random(12345);
+  int killed = 0;
+  for (int i = 0; i < 50; ++i) {
+    // From before the list is read to well within the work.
+    const int milliseconds = std::uniform_int_distribution<int>(5, 250)(random);
+    const ProgramResult result = Shell(
+        fmt::format("(exec {}killed >/dev/null) & pid=$!; sleep 0.{:03}; kill -KILL $pid && echo killed; wait $pid",
+                    batch, milliseconds));
+    killed += result.out == "killed\n" ? 1 : 0;
+  }
+  EXPECT_GT(killed, 10);
+  EXPECT_EQ(Shell(batch + "killed --retry-failed").exit_code, 4);
+  EXPECT_TRUE(Same("whole/results.csv", "killed/results.csv"));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "killed"))
+    EXPECT_THAT(entry.path().filename().string(), testing::Not(HasSubstr(".part")));
+}
+
+TEST_F(BatchKill, ADiskThatFillsUpLosesNothing) {
+  if (geteuid() != 0) GTEST_SKIP() << "mounting needs root";
+  MakeFiles(60);
+  const std::string batch = "lobefit batch data --recipe ggx --out ";
+  ASSERT_EQ(Shell(batch + "whole").exit_code, 0);
+  if (Shell("mkdir small; mount -t tmpfs -o size=160k none small").exit_code != 0)
+    GTEST_SKIP() << "no tmpfs may be mounted";
+  const ProgramResult full = Shell(batch + "small/out");
+  const ProgramResult again = Shell(batch + "small/out");
+  const ProgramResult grown = Shell("mount -o remount,size=20m small && " + batch + "small/out");
+  const ProgramResult copied = Shell("cp -r small/out out; umount small");
+  EXPECT_EQ(full.exit_code, 3) << full.err;
+  EXPECT_THAT(full.err, HasSubstr("No space left"));
+  EXPECT_EQ(again.exit_code, 3) << again.err;
+  EXPECT_EQ(grown.exit_code, 0) << grown.err << grown.out;
+  EXPECT_TRUE(Same("whole/results.csv", "out/results.csv"));
+  EXPECT_EQ(copied.exit_code, 0);
+}
+
+TEST_F(BatchKill, APoisonFileIsSetAsideAtItsSecondDeath) {
+  MakeFiles(3);
+  // Its many starts take minutes, and the limit on a process' time kills as the kernel does for want of memory.
+  WriteWholeFile(folder_ / "list.csv",
+                 "file,id,starts\ndata/m000.csv,poison,100000\ndata/m001.csv,,\ndata/m002.csv,,\n");
+  const std::string batch =
+      "(ulimit -t 2; exec lobefit batch list.csv --recipe ellipsoid --jobs 1 --threads 1 --out out)";
+  EXPECT_EQ(Shell(batch).exit_code, 137);
+  EXPECT_EQ(Shell("lobefit batch --out out --status").exit_code, 5);
+  const ProgramResult second = Shell(batch);
+  EXPECT_EQ(second.exit_code, 4) << second.err;
+  const auto table = Table("out/results.csv");
+  EXPECT_EQ(table.at("poison").at("status"), "crashed");
+  EXPECT_THAT(table.at("poison").at("message"), HasSubstr("signal 9"));
+  EXPECT_EQ(table.at("data/m001.csv").at("status"), "fitted");
+  EXPECT_EQ(table.at("data/m002.csv").at("status"), "fitted");
+  EXPECT_EQ(Shell(batch).exit_code, 4);
+}
+
+}  // namespace
+}  // namespace lobefit

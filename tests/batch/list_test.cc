@@ -1,0 +1,194 @@
+// Manifests, inputs, stored lists, shards.
+#include <filesystem>
+
+#include "tests/support/run_program.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/batch/list/inputs.h"
+#include "lobefit/batch/list/manifest.h"
+#include "lobefit/batch/list/shard.h"
+#include "lobefit/batch/list/work_list.h"
+
+namespace lobefit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Throws;
+using testing::ThrowsMessage;
+
+const ManifestNames kNames = {{"recipe", "theta-max"}, {"recipe"}, {"out"}, {"status", "verdict"}};
+constexpr const char* kCsv = "theta_i,phi_i,theta_o,phi_o,value\n20,0,20,180,0.5\n30,0,30,180,0.5\n";
+
+WorkList Parse(const std::string& text) { return ParseManifest(text, "/data/list.csv", kNames); }
+
+TEST(Manifest, TakesIdsOptionsAndOtherColumns) {
+  const WorkList list = Parse("operator,file,theta-max,id\nAnn,a/x.csv,70,first\n\"Bo, C\",../y.csv,,\n");
+  ASSERT_EQ(list.tasks.size(), 2U);
+  EXPECT_EQ(list.tasks[0].id, "first");
+  EXPECT_EQ(list.tasks[0].path, "/data/a/x.csv");
+  EXPECT_THAT(list.tasks[0].options, ElementsAre(testing::Pair("theta-max", "70")));
+  EXPECT_EQ(list.tasks[1].id, "y.csv");
+  EXPECT_EQ(list.tasks[1].path, "/y.csv");
+  EXPECT_TRUE(list.tasks[1].options.empty());
+  EXPECT_THAT(list.extra_columns, ElementsAre("operator"));
+  EXPECT_THAT(list.tasks[1].extra, ElementsAre("Bo, C"));
+  EXPECT_EQ(list.tasks[1].place, "/data/list.csv, line 3");
+}
+
+TEST(Manifest, RefusesWithLineAndCure) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "is empty; a manifest has a header"},
+      {"file\n", "lists no file"},
+      {"id,recipe\na,ggx\n", "line 1: a manifest needs the column 'file'; its columns are id, recipe"},
+      {"file,file\na,b\n", "line 1: column 'file' is there twice"},
+      {"file,,x\na,b,c\n", "line 1: column 2 has no name"},
+      {"file,out\na,b\n", "give --out on the command line"},
+      {"file,status\na,b\n", "column 'status' is one of the results' own; rename it"},
+      {"file,x\na,b\nc\n", "line 3: has 1 fields, the header has 2"},
+      {"file,x\n,b\n", "line 2: names no file"}};
+  for (const auto& [text, message] : cases)
+    EXPECT_THAT([text = text] { Parse(text); }, ThrowsMessage<InputError>(HasSubstr(message))) << text;
+}
+
+TEST(Manifest, IsToldFromAMeasurement) {
+  EXPECT_TRUE(LooksLikeManifest("id,file\n", kNames));
+  EXPECT_TRUE(LooksLikeManifest("x,recipe\r\n", kNames));
+  EXPECT_FALSE(LooksLikeManifest(kCsv, kNames));
+  EXPECT_FALSE(LooksLikeManifest("", kNames));
+}
+
+TEST(Manifest, IdIsTheRelativePath) {
+  EXPECT_EQ(IdOf("a/b.csv"), "a/b.csv");
+  EXPECT_EQ(IdOf("./a//b.csv"), "a/b.csv");
+  EXPECT_EQ(IdOf("../../a/b.csv"), "a/b.csv");
+  EXPECT_EQ(IdOf("/data/b.csv"), "data/b.csv");
+}
+
+class InputsTest : public ProgramTest {
+ protected:
+  void Put(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    WriteWholeFile(folder_ / name, text);
+  }
+  Inputs Gather(const std::vector<std::string>& names, const OptionWords& common = {}) const {
+    std::vector<std::string> inputs;
+    for (const std::string& name : names) inputs.push_back((folder_ / name).string());
+    return GatherInputs(inputs, common, kNames, folder_ / "out", {});
+  }
+};
+
+TEST_F(InputsTest, SearchesFoldersByContent) {
+  Put("data/b.txt", kCsv);
+  Put("data/sub/a.dat", std::string(kCsv) + "40,0,40,180,0.5\n");
+  Put("data/notes.md", "hello");
+  Put("data/.hidden.csv", kCsv);
+  Put("data/.git/c.csv", kCsv);
+  const Inputs inputs = Gather({"data"});
+  ASSERT_EQ(inputs.list.tasks.size(), 2U);
+  EXPECT_EQ(inputs.list.tasks[0].id, "sub/a.dat");  // the bigger one
+  EXPECT_EQ(inputs.list.tasks[1].id, "b.txt");
+  EXPECT_EQ(inputs.skipped, 1U);
+}
+
+TEST_F(InputsTest, LeavesItsOwnResultsOut) {
+  Put("a.csv", kCsv);
+  Put("out/documents/copy.csv", kCsv);
+  const Inputs inputs = GatherInputs({folder_.string()}, {}, kNames, folder_ / "out", {});
+  EXPECT_EQ(inputs.list.tasks.size(), 1U);
+}
+
+TEST_F(InputsTest, RefusesEqualIdsAndFilesWithBothPlaces) {
+  Put("a/x.csv", kCsv);
+  Put("b/x.csv", kCsv);
+  EXPECT_THAT(
+      [&] {
+        Gather({"a", "b"});
+      },
+      ThrowsMessage<InputError>(
+          testing::AllOf(HasSubstr("a/x.csv"), HasSubstr("b/x.csv"), HasSubstr("the id 'x.csv'"))));
+  Put("list.csv", "file,id\na/x.csv,one\nb/x.csv,two\na/x.csv,three\n");
+  EXPECT_THAT(
+      [&] { Gather({"list.csv"}); },
+      ThrowsMessage<InputError>(testing::AllOf(HasSubstr("line 4"), HasSubstr("line 2"), HasSubstr("listed already"))));
+  // With other options it is another task.
+  Put("list.csv", "file,id,recipe\na/x.csv,one,ggx\na/x.csv,three,ellipsoid\n");
+  EXPECT_EQ(Gather({"list.csv"}, {{"recipe", "auto"}, {"theta-max", "60"}}).list.tasks[0].options.at("theta-max"),
+            "60");
+}
+
+TEST_F(InputsTest, RefusesIdsThatAreNoRelativePath) {
+  Put("x.csv", kCsv);
+  for (const char* id : {"../x", "/x", "a//b", "a/", "a/./b"}) {
+    Put("list.csv", std::string("file,id\nx.csv,") + id + "\n");
+    EXPECT_THAT([&] { Gather({"list.csv"}); }, ThrowsMessage<InputError>(HasSubstr("is no relative path"))) << id;
+  }
+  Put("list.csv", "file,id\nx.csv," + std::string(201, 'a') + "\n");
+  EXPECT_THAT([&] { Gather({"list.csv"}); }, Throws<InputError>());
+}
+
+TEST_F(InputsTest, RefusesNamesThatAreNotThereAndEmptyFolders) {
+  EXPECT_THAT([&] { Gather({"none"}); }, ThrowsMessage<InputError>(HasSubstr("is not there")));
+  std::filesystem::create_directories(folder_ / "empty");
+  EXPECT_THAT([&] { Gather({"empty"}); }, ThrowsMessage<InputError>(HasSubstr("nothing to fit")));
+  Put("empty.csv", "");
+  EXPECT_THAT([&] { Gather({"empty.csv"}); }, ThrowsMessage<InputError>(HasSubstr("is empty; a manifest has")));
+}
+
+TEST_F(InputsTest, StoredListMayGrowButNotChange) {
+  Put("a.csv", kCsv);
+  Put("b.csv", kCsv);
+  const auto listed = [&](const std::vector<std::string>& names, const std::string& settings) {
+    Inputs inputs = Gather(names);
+    SetSettings([&](const OptionWords&) { return settings; }, &inputs.list);
+    return inputs.list;
+  };
+  const std::filesystem::path out = folder_ / "out";
+  StoreWorkList(listed({"a.csv"}, "s"), out);
+  StoreWorkList(listed({"a.csv", "b.csv"}, "s"), out);
+  const WorkList stored = ReadWorkList(out);
+  ASSERT_EQ(stored.tasks.size(), 2U);
+  EXPECT_EQ(stored.tasks[1].path, folder_ / "b.csv");
+  EXPECT_THAT([&] { StoreWorkList(listed({"b.csv"}, "s"), out); },
+              ThrowsMessage<UsageError>(
+                  testing::AllOf(HasSubstr("another list"), HasSubstr("a.csv"), HasSubstr("choose another --out"))));
+  EXPECT_THAT(
+      [&] {
+        StoreWorkList(listed({"a.csv", "b.csv"}, "t"), out);
+      },
+      ThrowsMessage<UsageError>(HasSubstr("is listed with no options")));
+  EXPECT_EQ(ReadWorkList(out).tasks.size(), 2U);
+}
+
+TEST_F(InputsTest, StoredListOfAnotherVersionIsRefused) {
+  Put("out/worklist.jsonl", "{\"format\":\"lobefit work list\",\"version\":\"0.0.1\",\"extra_columns\":[]}\n");
+  EXPECT_THAT([&] { ReadWorkList(folder_ / "out"); }, ThrowsMessage<InputError>(HasSubstr("is of version 0.0.1")));
+  Put("out/worklist.jsonl", "no json\n");
+  EXPECT_THAT([&] { ReadWorkList(folder_ / "out"); }, ThrowsMessage<InputError>(HasSubstr("line 1: is not a line")));
+}
+
+TEST(Shards, PartitionTheWork) {
+  for (const std::size_t count : {1U, 3U, 7U}) {
+    std::size_t end = 0;
+    std::vector<int> held(20, 0);
+    for (std::size_t i = 1; i <= count; ++i) {
+      const Shard shard = {i, count};
+      EXPECT_EQ(shard.Range(20).first, end);
+      end = shard.Range(20).second;
+      for (std::size_t k = 0; k < held.size(); ++k) held[k] += shard.Holds(k) ? 1 : 0;
+    }
+    EXPECT_EQ(end, 20U);
+    EXPECT_THAT(held, testing::Each(1));
+  }
+}
+
+TEST(Shards, RefusesWhatIsOutOfRange) {
+  EXPECT_EQ(ParseShard("3/8").index, 3U);
+  for (const char* text : {"0/8", "9/8", "3", "a/b", "1/0", "-1/2", "1/2/3", "", "1/100001"})
+    EXPECT_THAT([text] { ParseShard(text); }, ThrowsMessage<UsageError>(HasSubstr("3/8"))) << text;
+}
+
+}  // namespace
+}  // namespace lobefit

@@ -1,0 +1,152 @@
+#include "lobefit/batch/run/records.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/run_program.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/batch/run/journal.h"
+
+namespace lobefit {
+namespace {
+
+DoneRecord Done(const std::string& id, TaskStatus status, double at, const std::string& key = "k") {
+  DoneRecord done;
+  done.id = id;
+  done.key = key;
+  done.settings = "s";
+  done.status = status;
+  done.at = at;
+  done.stamp = {5, 1234567890123456789, 3};
+  done.message = "a \"quoted\" ,\"row\":{ message";
+  if (status == TaskStatus::kFitted) done.row = R"({"verdict":null,"alpha_x":0.125})";
+  return done;
+}
+
+class RecordsTest : public ProgramTest {
+ protected:
+  std::filesystem::path Segments() const { return folder_ / "segments"; }
+  std::filesystem::path OnlySegment() const { return std::filesystem::directory_iterator(Segments())->path(); }
+};
+
+TEST_F(RecordsTest, ComeBackAsTheyWereWritten) {
+  {
+    Journal journal(Segments());
+    journal.Append(ToLine(StartRecord{"a/\xC3\xA4", 1, 0}), false);
+    journal.Append(ToLine(Done("a/\xC3\xA4", TaskStatus::kFitted, 2)), true);
+    journal.Append(ToLine(Done("b", TaskStatus::kFailed, 3)), true);
+  }
+  const Records records = ReadRecords(folder_, 2);
+  ASSERT_EQ(records.segments.size(), 1U);
+  EXPECT_EQ(records.segments[0].lines_lost, 0U);
+  ASSERT_EQ(records.done.size(), 2U);
+  EXPECT_EQ(records.done[0].id, "a/\xC3\xA4");
+  EXPECT_EQ(records.done[0].row, R"({"verdict":null,"alpha_x":0.125})");
+  EXPECT_EQ(records.done[0].message, "a \"quoted\" ,\"row\":{ message");
+  EXPECT_EQ(records.done[0].stamp, (FileStamp{5, 1234567890123456789, 3}));
+  EXPECT_EQ(records.done[1].row, "");
+  EXPECT_EQ(NameOf(records.done[1].status), "failed");
+}
+
+TEST_F(RecordsTest, WritesNoFileWithoutALine) {
+  { const Journal journal(Segments()); }
+  EXPECT_FALSE(std::filesystem::exists(Segments()));
+}
+
+TEST_F(RecordsTest, EachJournalHasAFileOfItsOwn) {
+  {
+    Journal a(Segments()), b(Segments());
+    EXPECT_NE(a.name(), b.name());
+    a.Append(ToLine(Done("a", TaskStatus::kFitted, 1)), true);
+    b.Append(ToLine(Done("b", TaskStatus::kFitted, 1)), true);
+  }
+  EXPECT_EQ(ReadRecords(folder_, 1).segments.size(), 2U);
+}
+
+TEST_F(RecordsTest, PassesOverLinesThatWereCutShort) {
+  {
+    Journal journal(Segments());
+    for (int i = 0; i < 5; ++i) journal.Append(ToLine(Done("t" + std::to_string(i), TaskStatus::kFitted, i)), true);
+  }
+  const std::string whole = ReadWholeFile(OnlySegment());
+  std::size_t seen = 0;
+  for (std::size_t length = 0; length <= whole.size(); length += 7) {
+    WriteWholeFile(OnlySegment(), whole.substr(0, length));
+    const Records records = ReadRecords(folder_, 1);
+    // Whatever is left of the last line: the others count, and nothing else does.
+    const auto lines =
+        static_cast<std::size_t>(std::count(whole.begin(), whole.begin() + static_cast<long>(length), '\n'));
+    EXPECT_LE(records.done.size(), lines == 0 ? 0 : lines);
+    EXPECT_GE(records.done.size() + 1, lines);
+    seen = std::max(seen, records.done.size());
+  }
+  EXPECT_GE(seen, 4U);
+}
+
+TEST_F(RecordsTest, TasksOfAProcessThatIsGoneCountAsDeaths) {
+  {
+    Journal journal(Segments());
+    journal.Append(ToLine(StartRecord{"done", 1, 0}), false);
+    journal.Append(ToLine(StartRecord{"begun", 2, 0}), false);
+    journal.Append(ToLine(Done("done", TaskStatus::kFailed, 3)), true);
+    // This process still runs.
+    EXPECT_TRUE(ReadRecords(folder_, 1).deaths.empty());
+  }
+  std::string text = ReadWholeFile(OnlySegment());
+  const std::size_t at = text.find("\"start_ticks\":") + 14;
+  WriteWholeFile(OnlySegment(), text.insert(at, "1"));
+  const Records records = ReadRecords(folder_, 1);
+  ASSERT_EQ(records.deaths.size(), 1U);
+  EXPECT_EQ(records.deaths.at("begun")[0].at, 2);
+}
+
+TEST_F(RecordsTest, TheBestOfOneKeyCountsElseTheLast) {
+  std::filesystem::create_directories(Segments());
+  const auto latest = [&](const std::vector<DoneRecord>& lines) {
+    std::string text;
+    for (const DoneRecord& line : lines) text += ToLine(line) + "\n";
+    WriteWholeFile(Segments() / "x.jsonl", text);
+    const Records records = ReadRecords(folder_, 1);
+    const DoneRecord* done = LatestDone(records, {{"a", "s"}}).at("a");
+    return std::make_pair(done->status, done->at);
+  };
+  const TaskStatus fitted = TaskStatus::kFitted, failed = TaskStatus::kFailed, crashed = TaskStatus::kCrashed;
+  EXPECT_EQ(latest({Done("a", fitted, 1), Done("a", crashed, 2)}), std::make_pair(fitted, 1.0));
+  EXPECT_EQ(latest({Done("a", crashed, 2), Done("a", failed, 1)}), std::make_pair(failed, 1.0));
+  EXPECT_EQ(latest({Done("a", failed, 1), Done("a", failed, 2)}), std::make_pair(failed, 2.0));
+  EXPECT_EQ(latest({Done("a", fitted, 1), Done("a", failed, 2, "other")}), std::make_pair(failed, 2.0));
+}
+
+TEST_F(RecordsTest, OtherSettingsAndUnknownTasksAreLeftOut) {
+  std::filesystem::create_directories(Segments());
+  WriteWholeFile(Segments() / "x.jsonl", ToLine(Done("a", TaskStatus::kFitted, 1)) + "\n");
+  const Records records = ReadRecords(folder_, 1);
+  EXPECT_TRUE(LatestDone(records, {{"a", "t"}}).empty());
+  EXPECT_TRUE(LatestDone(records, {{"b", "s"}}).empty());
+}
+
+TEST(Writers, AreRecognised) {
+  const Writer here = ThisProcess();
+  EXPECT_TRUE(IsRunning(here));
+  Writer other = here;
+  other.start_ticks += 1;
+  EXPECT_FALSE(IsRunning(other));
+  other = here;
+  other.space = "before the last boot";
+  EXPECT_FALSE(IsRunning(other));
+  other = here;
+  other.host = "elsewhere";
+  EXPECT_FALSE(IsRunning(other));
+}
+
+TEST_F(RecordsTest, SaysWhereNothingCanBeWritten) {
+  WriteWholeFile(folder_ / "file", "");
+  Journal journal(folder_ / "file" / "segments");
+  EXPECT_THROW(journal.Append("{}", true), OutputError);
+}
+
+}  // namespace
+}  // namespace lobefit

@@ -1,0 +1,108 @@
+#include "lobefit/batch/results/results.h"
+
+#include "tests/support/run_program.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "lobefit/base/error.h"
+#include "lobefit/batch/list/csv_text.h"
+#include "lobefit/batch/results/result_row.h"
+
+namespace lobefit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+
+WorkList List() {
+  WorkList list;
+  list.extra_columns = {"lab"};
+  for (const char* id : {"c", "a", "b"}) list.tasks.push_back({id, id, id, 1, {}, "s", {std::string("lab ") + id}, ""});
+  return list;
+}
+
+DoneRecord Done(const std::string& id, TaskStatus status, std::string_view row) {
+  DoneRecord done;
+  done.id = id;
+  done.key = "k" + id;
+  done.settings = "s";
+  done.status = status;
+  done.row = row;
+  return done;
+}
+
+TEST(Results, ColumnsAreOfAllRowsAndRowsById) {
+  const WorkList list = List();
+  Records records;
+  records.segments.resize(1);
+  records.done = {Done("c", TaskStatus::kFitted, R"({"verdict":"good","f0[R]":0.5,"f0[R].stderr":null})"),
+                  Done("a", TaskStatus::kFailed, ""),
+                  Done("b", TaskStatus::kFitted, R"({"verdict":null,"alpha_x":0.25})")};
+  const ResultTable table = MakeTable(list, records, 2);
+  EXPECT_EQ(table.ExitCode(), kExitFit);
+  const std::string csv = ToCsv(table);
+  CsvRecords reader(csv, "");
+  std::vector<std::string> columns, row;
+  ASSERT_TRUE(reader.Next(&columns));
+  EXPECT_THAT(std::vector<std::string>(columns.begin(), columns.begin() + 8),
+              ElementsAre("id", "file", "lab", "status", "verdict", "message", "sha256", "key"));
+  EXPECT_THAT(std::vector<std::string>(columns.end() - 3, columns.end()),
+              ElementsAre("alpha_x", "f0[R]", "f0[R].stderr"));
+  std::vector<std::string> ids;
+  while (reader.Next(&row)) {
+    ids.push_back(row[0]);
+    EXPECT_EQ(row[2], "lab " + row[0]);
+    if (row[0] == "b") {
+      EXPECT_EQ(row[columns.size() - 3], "0.25");
+    } else if (row[0] == "c") {
+      EXPECT_EQ(row[4], "good");
+    }
+  }
+  EXPECT_THAT(ids, ElementsAre("a", "b", "c"));
+  std::istringstream lines(ToJsonLines(table));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(nlohmann::json::parse(line)["result"], nullptr);
+  std::getline(lines, line);
+  EXPECT_EQ(nlohmann::json::parse(line)["result"]["alpha_x"], 0.25);
+  EXPECT_EQ(nlohmann::json::parse(line)["lab"], "lab b");
+}
+
+TEST(Results, ExitCodeSaysWhatIsLeft) {
+  const WorkList list = List();
+  Records records;
+  records.segments.resize(1);
+  records.done = {Done("a", TaskStatus::kFitted, ""), Done("b", TaskStatus::kFitted, "")};
+  EXPECT_EQ(MakeTable(list, records, 1).ExitCode(), kExitMissing);
+  records.done.push_back(Done("c", TaskStatus::kFitted, ""));
+  EXPECT_EQ(MakeTable(list, records, 1).ExitCode(), kExitDone);
+  records.done.back().status = TaskStatus::kDoubtful;
+  EXPECT_EQ(MakeTable(list, records, 1).ExitCode(), kExitFit);
+}
+
+TEST(Results, RunsHoldWhatDoesNotCountToo) {
+  const WorkList list = List();
+  Records records;
+  records.segments = {{"host-1-00", "host", false, nullptr, 0}};
+  DoneRecord first = Done("a", TaskStatus::kFailed, ""), second = Done("a", TaskStatus::kFitted, "");
+  first.at = 1700000000.5;
+  second.at = 1700000002;
+  records.done = {first, second};
+  records.deaths["b"] = {{"b", 1700000001, 0}};
+  EXPECT_EQ(RunsToCsv(list, records),
+            "id,status,counts,begun,seconds,threads,peak_mb,host,segment\n"
+            "a,failed,no,2023-11-14T22:13:20.500Z,0.000000,1,0.0,host,host-1-00\n"
+            "b,died,no,2023-11-14T22:13:21.000Z,,,,host,host-1-00\n"
+            "a,fitted,yes,2023-11-14T22:13:22.000Z,0.000000,1,0.0,host,host-1-00\n");
+}
+
+TEST(ResultRows, AreFlatObjects) {
+  EXPECT_THAT(CellsOf(R"({"a":null,"b":true,"c":-3,"d":1.5e-07,"e":"x,\"y"})"),
+              ElementsAre(Pair("a", ""), Pair("b", "true"), Pair("c", "-3"), Pair("d", "1.5e-07"), Pair("e", "x,\"y")));
+  for (const char* text : {"", "[1]", R"({"a":{}})", R"({"a":1)", "3"}) EXPECT_THROW(CellsOf(text), InputError) << text;
+}
+
+}  // namespace
+}  // namespace lobefit
