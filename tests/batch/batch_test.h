@@ -32,7 +32,7 @@ class BatchTest : public ProgramTest {
     std::filesystem::create_directories(folder_ / "data");
     WriteWholeFile(folder_ / "data" / "broken_empty.csv", "");
     WriteWholeFile(folder_ / "data" / "broken_text.csv", "this is, no measurement\n");
-    WriteWholeFile(folder_ / "data" / "broken_row.csv", "theta_i,phi_i,theta_o,phi_o,value\n20,0,20,180,x\n");
+    WriteWholeFile(folder_ / "data" / "broken_row.csv", "theta_i,phi_i,theta_o,phi_o,value\n20,0,20,180\n");
   }
   // Rows of a table by their id, each as texts by column.
   std::map<std::string, std::map<std::string, std::string>> Table(const std::filesystem::path& path) const {

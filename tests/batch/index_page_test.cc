@@ -64,6 +64,8 @@ TEST_F(IndexPageTest, HoldsRowsIntervalsAndPictures) {
   // The quantile of Student's t with 10 degrees of freedom is 2.228139.
   EXPECT_EQ(data["errors"][std::to_string(alpha)][1], 0.00445628);
   EXPECT_EQ(data["pictures"][1], nullptr);
+  // No row has a verdict.
+  for (const auto& column : data["columns"]) EXPECT_NE(column["name"], "verdict");
   EXPECT_EQ(data["pictures"][2]["measured"], true);
 }
 

@@ -58,11 +58,16 @@ TEST_F(BatchKill, ADiskThatFillsUpLosesNothing) {
 
 TEST_F(BatchKill, APoisonFileIsSetAsideAtItsSecondDeath) {
   MakeFiles(3);
-  // Its many starts take minutes, and the limit on a process' time kills as the kernel does for want of memory.
+  // Lobes for half a million samples take long, and the limit on a process' time kills as the kernel does for want of
+  // memory.
+  ASSERT_EQ(Shell("lobefit synth \"$SOURCE\"/samples/satin_plastic.toml --layout visible-normals --samples 8000 "
+                  "--theta-i 10,20,30,40,50,60,70 --phi-i 0,30,60,90,120,150,180,210,240,270 --noise 0.05 --digits 6 "
+                  "--out data/large.csv")
+                .exit_code,
+            0);
   WriteWholeFile(folder_ / "list.csv",
-                 "file,id,starts\ndata/m000.csv,poison,100000\ndata/m001.csv,,\ndata/m002.csv,,\n");
-  const std::string batch =
-      "(ulimit -t 2; exec lobefit batch list.csv --recipe ellipsoid --jobs 1 --threads 1 --out out)";
+                 "file,id,recipe\ndata/large.csv,poison,sel\ndata/m001.csv,,ggx\ndata/m002.csv,,ggx\n");
+  const std::string batch = "(ulimit -t 2; exec lobefit batch list.csv --jobs 1 --threads 1 --out out)";
   EXPECT_EQ(Shell(batch).exit_code, 137);
   EXPECT_EQ(Shell("lobefit batch --out out --status").exit_code, 5);
   const ProgramResult second = Shell(batch);

@@ -86,10 +86,13 @@ TEST_F(InputsTest, SearchesFoldersByContent) {
   Put("data/notes.md", "hello");
   Put("data/.hidden.csv", kCsv);
   Put("data/.git/c.csv", kCsv);
+  // Packed, and cut off: it is listed, and will fail.
+  Put("data/sub/cut.csv.gz", "\x1f\x8b\x08");
   const Inputs inputs = Gather({"data"});
-  ASSERT_EQ(inputs.list.tasks.size(), 2U);
+  ASSERT_EQ(inputs.list.tasks.size(), 3U);
   EXPECT_EQ(inputs.list.tasks[0].id, "sub/a.dat");  // the bigger one
   EXPECT_EQ(inputs.list.tasks[1].id, "b.txt");
+  EXPECT_EQ(inputs.list.tasks[2].id, "sub/cut.csv.gz");
   EXPECT_EQ(inputs.skipped, 1U);
 }
 

@@ -6,6 +6,8 @@
 #include "tests/support/run_program.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/batch/run/journal.h"
@@ -140,6 +142,26 @@ TEST(Writers, AreRecognised) {
   other = here;
   other.host = "elsewhere";
   EXPECT_FALSE(IsRunning(other));
+}
+
+// Where nobody asks how it ended, as in containers without an init, a process keeps its entry after its death.
+TEST(Writers, OneThatIsDeadAndNotWaitedForDoesNotRun) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::uint64_t ticks = ThisProcess().start_ticks;
+    _exit(write(ends[1], &ticks, sizeof ticks) == sizeof ticks ? 0 : 1);
+  }
+  Writer dead = ThisProcess();
+  dead.pid = child;
+  ASSERT_EQ(read(ends[0], &dead.start_ticks, sizeof dead.start_ticks), static_cast<ssize_t>(sizeof dead.start_ticks));
+  siginfo_t how;
+  ASSERT_EQ(waitid(P_PID, static_cast<id_t>(child), &how, WEXITED | WNOWAIT), 0);
+  EXPECT_FALSE(IsRunning(dead));
+  waitpid(child, nullptr, 0);
+  close(ends[0]);
+  close(ends[1]);
 }
 
 TEST_F(RecordsTest, SaysWhereNothingCanBeWritten) {

@@ -101,7 +101,7 @@ TEST_F(BatchVerb, RefusesBadInputBeforeAnythingRuns) {
           "list.csv, line 3: 'data/m000.csv' is listed already (list.csv, line 2)");
   refused("file,recipe\ndata/m000.csv,gxx\n", "", 3, "list.csv, line 2: recipe 'gxx'");
   refused("file,theta-max\ndata/m000.csv,700\n", "", 2, "list.csv, line 2");
-  refused("file,angle-unit\ndata/m000.csv,gon\n", "", 2, "list.csv, line 2: --angle-unit gon");
+  refused("file,angle-unit\ndata/m000.csv,turns\n", "", 2, "list.csv, line 2: --angle-unit turns");
   refused("file\ndata/m000.csv\n", "--shard 3/2", 2, "--shard 3/2");
   refused("file\ndata/m000.csv\n", "--memory lots", 2, "--memory lots");
   refused("file\ndata/m000.csv\n", "--engine slurm --shards 2", 2, "at most one shard a task");

@@ -101,8 +101,13 @@ Json DataOf(const ResultTable& table, const std::filesystem::path& out, const In
   const std::vector<const ResultTable::Row*> rows = ChooseRows(table, options.most_rows);
   std::map<std::string, std::size_t> place;
   for (std::size_t i = 0; i < table.columns.size(); ++i) place[table.columns[i]] = i;
+  // Columns in which no row has anything say nothing.
+  std::set<std::size_t> filled;
+  for (const ResultTable::Row* row : rows) {
+    for (const auto& [column, text] : row->cells) filled.insert(column);
+  }
   std::vector<std::size_t> shown;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+  for (const std::size_t i : filled) {
     if (IsShown(table.columns[i])) shown.push_back(i);
   }
   // Cells by column, and the half intervals of those that have errors.

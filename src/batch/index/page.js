@@ -112,7 +112,7 @@ function showGallery() {
   const withPicture = order.filter((index) => data.pictures[index]);
   get("gallery").replaceChildren(...withPicture.map(card));
   const rest = order.length - withPicture.length;
-  get("galleryNote").textContent = rest > 0 ? rest + " rows have no picture here: they were not fitted, hold a table of lobes, or come after the first " + data.most_pictures + "." : "";
+  get("galleryNote").textContent = rest > 0 ? "Without a picture: " + rest + " of " + order.length + ", which were not fitted, hold a table of lobes, or come after the first " + data.most_pictures + "." : "";
 }
 
 function showTable() {

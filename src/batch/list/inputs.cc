@@ -128,11 +128,15 @@ class Gatherer {
     if (known != known_.end() && known->second == SizeOf(path)) return true;
     try {
       const DecodedFile file(path);
-      RecogniseFormat({path, file.bytes()});
-      return true;
+      try {
+        RecogniseFormat({path, file.bytes()});
+      } catch (const InputError&) {
+        return false;
+      }
     } catch (const InputError&) {
-      return false;
+      // Damaged or not to be read: a task that fails, rather than one that nobody misses.
     }
+    return true;
   }
 
   void AddFolder(const Path& folder) {

@@ -42,7 +42,7 @@ std::string HostName() {
   return host.empty() ? "host" : host.substr(0, 64);
 }
 
-// Field 22 of /proc/PID/stat; 0 where there is no such process.
+// Field 22 of /proc/PID/stat; 0 where there is no such process, or one that is dead and only waits for its parent.
 std::uint64_t StartTicks(long pid) {
   const std::string line = FirstLineOf(fmt::format("/proc/{}/stat", pid).c_str());
   // The name, in brackets, may hold blanks.
@@ -50,7 +50,10 @@ std::uint64_t StartTicks(long pid) {
   if (after_name == std::string::npos) return 0;
   std::istringstream fields(line.substr(after_name + 1));
   std::string field;
-  for (int i = 3; i <= 22; ++i) fields >> field;
+  for (int i = 3; i <= 22; ++i) {
+    fields >> field;
+    if (i == 3 && (field == "Z" || field == "X")) return 0;
+  }
   return std::strtoull(field.c_str(), nullptr, 10);
 }
 

@@ -53,7 +53,7 @@ struct Plan {
 Plan MakePlan(const WorkList& list, const Records& records, const RunOptions& options,
               const std::filesystem::path& out);
 
-// Called after each task, from any thread.
+// Called after each task, from any thread; the record's row is there for the time of the call.
 using Done = std::function<void(const DoneRecord&)>;
 
 // Runs the plan. Ends early, with what runs finished and written down, once `stop` is set. Throws OutputError where
