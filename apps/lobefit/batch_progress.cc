@@ -7,6 +7,7 @@
 
 #include "lobefit/base/text.h"
 #include "lobefit/batch/results/result_row.h"
+#include "lobefit/batch/results/results.h"
 
 namespace lobefit {
 namespace {
@@ -36,8 +37,7 @@ void BatchProgress::Add(const DoneRecord& done) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++done_;
   if (lines_) {
-    fmt::print("{} {}{}{}\n", NameOf(done.status), Excerpt(done.id, 200), done.message.empty() ? "" : ": ",
-               Excerpt(done.message, 400));
+    fmt::print("{} {}\n", NameOf(done.status), Said(done.id, done.message));
     std::fflush(stdout);
   }
   if (!terminal_) return;

@@ -44,8 +44,7 @@ std::string StatusToText(const ResultTable& table) {
   for (const ResultTable::Row& row : table.rows) {
     if (row.done->document_bytes > 0) continue;
     if (failed++ < kNamed)
-      text += fmt::format("{}: {}: {}\n", NameOf(row.done->status), Excerpt(row.task->id, 200),
-                          Excerpt(row.done->message, 400));
+      text += fmt::format("{}: {}\n", NameOf(row.done->status), Said(row.task->id, row.done->message));
   }
   if (failed > kNamed) text += fmt::format("... and {} more that failed; all are in results.csv\n", failed - kNamed);
   for (std::size_t i = 0; i < table.missing.size() && i < kNamed; ++i)

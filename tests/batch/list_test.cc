@@ -86,14 +86,19 @@ TEST_F(InputsTest, SearchesFoldersByContent) {
   Put("data/notes.md", "hello");
   Put("data/.hidden.csv", kCsv);
   Put("data/.git/c.csv", kCsv);
-  // Packed, and cut off: it is listed, and will fail.
+  // Of other columns, and prose with commas.
+  Put("data/normals.csv", "column,row,height\n1,2,3\n");
+  Put("data/LICENSE", "Permission is granted, free of charge,\nto 1, 2 or more persons\n");
+  // Cut off, and packed and cut off: they are listed, and will fail.
+  Put("data/names.csv", "theta_i,phi_i,theta_o,phi_o,value\n");
   Put("data/sub/cut.csv.gz", "\x1f\x8b\x08");
   const Inputs inputs = Gather({"data"});
-  ASSERT_EQ(inputs.list.tasks.size(), 3U);
+  ASSERT_EQ(inputs.list.tasks.size(), 4U);
   EXPECT_EQ(inputs.list.tasks[0].id, "sub/a.dat");  // the bigger one
   EXPECT_EQ(inputs.list.tasks[1].id, "b.txt");
-  EXPECT_EQ(inputs.list.tasks[2].id, "sub/cut.csv.gz");
-  EXPECT_EQ(inputs.skipped, 1U);
+  EXPECT_EQ(inputs.list.tasks[2].id, "names.csv");
+  EXPECT_EQ(inputs.list.tasks[3].id, "sub/cut.csv.gz");
+  EXPECT_EQ(inputs.skipped, 3U);
 }
 
 TEST_F(InputsTest, LeavesItsOwnResultsOut) {

@@ -125,13 +125,19 @@ Json DataOf(const ResultTable& table, const std::filesystem::path& out, const In
     json_rows.push_back(cells);
   }
   std::string scatter_y;
+  std::size_t scatter_values = 0;
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const std::string& name = table.columns[shown[k]];
     const auto error = place.find(name + ".stderr");
     columns.push_back({{"name", name}, {"text", static_cast<bool>(is_text[k])}});
     if (error == place.end()) continue;
-    // The first reflectance, which with the width says most of a material.
-    if (scatter_y.empty() && (name.starts_with("f0") || name.starts_with("scale"))) scatter_y = name;
+    // The reflectance that most rows have, which with the width says most of a material.
+    const auto values = static_cast<std::size_t>(
+        std::count_if(json_rows.begin(), json_rows.end(), [&](const Json& cells) { return cells[k].is_number(); }));
+    if (values > scatter_values && (name.starts_with("f0") || name.starts_with("scale"))) {
+      scatter_y = name;
+      scatter_values = values;
+    }
     Json column = Json::array();
     for (const ResultTable::Row* row : rows) {
       const auto text = [&](const char* ending) {

@@ -48,7 +48,8 @@ function showFailures() {
   get("failures").hidden = data.totals.failed + data.totals.crashed === 0;
   for (const row of failed.slice(0, shownRows)) {
     const box = make("div", "failure");
-    box.append(make("b", "", row[idColumn]), row[messageColumn] || "");
+    const message = row[messageColumn] || "", named = row[idColumn] + ": ";
+    box.append(make("b", "", row[idColumn]), message.startsWith(named) ? message.slice(named.length) : message);
     get("failureList").append(box);
   }
   const more = data.totals.failed + data.totals.crashed - Math.min(shownRows, failed.length);

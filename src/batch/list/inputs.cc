@@ -11,6 +11,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/reader.h"
 #include "lobefit/io/read.h"
 #include "lobefit/io/text/decoded_file.h"
 
@@ -129,7 +130,10 @@ class Gatherer {
     try {
       const DecodedFile file(path);
       try {
-        RecogniseFormat({path, file.bytes()});
+        const InputFile input = {path, file.bytes()};
+        // Every text with separators could be rows of a goniometer whose columns --columns names.
+        if (RecogniseFormat(input).name == std::string_view("csv") && !common_.contains("columns"))
+          return NamesDirections(input);
       } catch (const InputError&) {
         return false;
       }

@@ -107,6 +107,12 @@ ResultTable MakeTable(const WorkList& list, const Records& records, int threads)
   return table;
 }
 
+std::string Said(const std::string& id, const std::string& message) {
+  const std::string said = Excerpt(message, 400);
+  if (message.starts_with(id + ":")) return said;
+  return Excerpt(id, 200) + (message.empty() ? "" : ": ") + said;
+}
+
 std::vector<std::string> ReservedColumns() {
   std::vector<std::string> names = kFirst;
   names.insert(names.end(), kOfTask.begin(), kOfTask.end());

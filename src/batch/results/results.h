@@ -36,6 +36,9 @@ struct ResultTable {
 // Both must outlive the table.
 ResultTable MakeTable(const WorkList& list, const Records& records, int threads);
 
+// What is said of a task on one line: its id and the message, which often begins with the file's name already.
+std::string Said(const std::string& id, const std::string& message);
+
 // Names that a list's own columns may not have.
 std::vector<std::string> ReservedColumns();
 

@@ -476,6 +476,30 @@ bool IsCsv(std::string_view bytes) {
   return false;
 }
 
+bool NamesDirections(const InputFile& file) {
+  const auto is_direction = [](const CsvColumn& column) {
+    return column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed;
+  };
+  try {
+    const CsvHeader header = ReadCsvHeader(file, "");
+    return header.head_coordinate || std::any_of(header.columns.begin(), header.columns.end(), is_direction);
+  } catch (const InputError&) {
+    // Such as a file that ends after its names.
+  }
+  CsvLines lines(file.bytes.substr(0, 1 << 16));
+  std::string_view line;
+  while (lines.Next(&line)) {
+    for (const char separator : {',', ';', '\t', '|', kBlankSeparator}) {
+      std::vector<std::string_view> names;
+      SplitCsvLine(IsComment(line) ? CommentText(line) : line, separator, &names);
+      const auto directions = std::count_if(names.begin(), names.end(),
+                                            [&](std::string_view name) { return is_direction(ClassifyColumn(name)); });
+      if (directions >= 2) return true;
+    }
+  }
+  return false;
+}
+
 Measurement ReadCsv(const InputFile& file, const ReadOptions& options) { return CsvReader(file, options).Read(); }
 
 }  // namespace lobefit
