@@ -1,6 +1,7 @@
 #include "lobefit/batch/run/schedule.h"
 
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -22,16 +23,21 @@ struct Trace {
   std::vector<std::pair<std::size_t, int>> begun;
   std::uint64_t memory = 0, most_memory = 0;
   int running = 0, most_running = 0;
+  // The first tasks wait until so many run at once, however slow the machine is to begin them.
+  int together = 0;
+  std::condition_variable met;
 };
 
 void RunTraced(const std::vector<std::uint64_t>& memory, const ScheduleLimits& limits, Trace* trace,
                const std::atomic<bool>& stop = false) {
   RunScheduled(memory, limits, stop, [&](std::size_t i, int threads) {
     {
-      const std::lock_guard<std::mutex> lock(trace->mutex);
+      std::unique_lock<std::mutex> lock(trace->mutex);
       trace->begun.emplace_back(i, threads);
       trace->most_memory = std::max(trace->most_memory, trace->memory += memory[i]);
       trace->most_running = std::max(trace->most_running, ++trace->running);
+      trace->met.notify_all();
+      trace->met.wait_for(lock, 30s, [&] { return trace->most_running >= trace->together; });
     }
     std::this_thread::sleep_for(5ms);
     const std::lock_guard<std::mutex> lock(trace->mutex);
@@ -42,6 +48,7 @@ void RunTraced(const std::vector<std::uint64_t>& memory, const ScheduleLimits& l
 
 TEST(Schedule, RunsEachOnceAndTheLastOnAllThreads) {
   Trace trace;
+  trace.together = 4;
   RunTraced(std::vector<std::uint64_t>(9, 1), {4, 8, 100}, &trace);
   ASSERT_EQ(trace.begun.size(), 9U);
   EXPECT_EQ(trace.most_running, 4);
