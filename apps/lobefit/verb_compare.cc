@@ -19,6 +19,7 @@
 #include "lobefit/fit/compare.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/sel/slice.h"
+#include "lobefit/io/series.h"
 #include "lobefit/material/json.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/report/comparison/comparison.h"
@@ -140,6 +141,14 @@ int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   const std::filesystem::path folder = verb.out;
   MakeFolder(folder);
 
+  const std::string name = verb.name.empty() ? SeriesName(verb.files) : verb.name;
+  const std::filesystem::path document = folder / (name + ".material.json"),
+                              picture_file = folder / (name + ".compare.png");
+  std::vector<std::filesystem::path> inputs = InputPaths(verb.files);
+  inputs.insert(inputs.end(), verb.with.begin(), verb.with.end());
+  CheckOutput(document, inputs);
+  if (!verb.no_report) CheckOutput(picture_file, inputs);
+
   const auto start = std::chrono::steady_clock::now();
   std::vector<GivenMaterial> given;
   for (const std::string& path : verb.with) given.push_back(LoadGiven(path));
@@ -154,13 +163,10 @@ int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   material.command = common.command;
   material.timings_s["read"] = read_s;
   material.recipe_reason = comparison.reason;
-  const std::string name = verb.name.empty() ? SeriesName(verb.files) : verb.name;
-  const std::filesystem::path document = folder / (name + ".material.json");
   // The document first: it is kept even where drawing fails.
   WriteMaterial(material, document);
   std::string picture;
-  if (!verb.no_report)
-    picture = DrawPicture(comparison, measurement, folder / (name + ".compare.png"), options.fit.threads);
+  if (!verb.no_report) picture = DrawPicture(comparison, measurement, picture_file, options.fit.threads);
   const ComparisonContext context = {measurement.source, measurement.sha256, measurement.format, common.command,
                                      document.string()};
   if (common.json) {

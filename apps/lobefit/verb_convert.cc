@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/io/series.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/write.h"
 
@@ -48,6 +50,7 @@ int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
   if (verb.files.size() < 2) throw UsageError("convert needs a file to read and one to write");
   const std::vector<std::string> in(verb.files.begin(), verb.files.end() - 1);
   const std::string& out = verb.files.back();
+  CheckOutput(out, InputPaths(in));
   const WriteFormat& format = FindWriteFormat(name, out);
   Measurement measurement = verb.measurement.Load(in);
   measurement.isotropic = measurement.isotropic || verb.isotropic;

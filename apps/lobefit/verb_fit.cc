@@ -13,6 +13,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/io/series.h"
 #include "lobefit/material/json.h"
 #include "lobefit/report/report.h"
 
@@ -30,16 +31,21 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   const std::filesystem::path folder = verb.out;
   MakeFolder(folder);
 
+  const std::string stem = SeriesName(verb.files);
+  const bool of_material = verb.files.size() == 1 && LooksLikeMaterial(ParseFileSpec(verb.files[0]).path);
+  // A table of lobes must not overwrite the material that it was sampled from.
+  const std::string name = !verb.name.empty() ? verb.name
+                           : of_material      ? stem.substr(0, stem.find('.')) + ".sel"
+                                              : stem;
+  const std::filesystem::path document = folder / (name + ".material.json"), picture = folder / (name + ".report.png");
+  const std::vector<std::string> formats = ParseReportFormats(verb.format);
+  const std::vector<std::filesystem::path> inputs = InputPaths(verb.files);
+  CheckOutput(document, inputs);
+  if (!verb.no_report) CheckReports(formats, picture, inputs);
+
   FittedFile fitted = FitFile(verb.options, verb.files, common.Threads(), common.command);
   Material& material = fitted.material;
 
-  // A table of lobes must not overwrite the material that it was sampled from.
-  const std::string stem = SeriesName(verb.files);
-  const std::string name = !verb.name.empty()   ? verb.name
-                           : fitted.of_material ? stem.substr(0, stem.find('.')) + ".sel"
-                                                : stem;
-  const std::filesystem::path document = folder / (name + ".material.json"), picture = folder / (name + ".report.png");
-  const std::vector<std::string> formats = ParseReportFormats(verb.format);
   // The document first: it is kept even where drawing fails.
   WriteMaterial(material, document);
   std::string pictures;

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/series.h"
 #include "lobefit/material/json.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/report/report.h"
@@ -43,6 +45,10 @@ std::filesystem::path PictureOf(const ReportVerb& verb) {
 }
 
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
+  const std::vector<std::string> formats = ParseReportFormats(verb.format);
+  std::vector<std::filesystem::path> inputs = InputPaths(verb.files);
+  inputs.emplace_back(verb.material);
+  CheckReports(formats, PictureOf(verb), inputs);
   const Material material = ReadMaterial(verb.material);
   Measurement measurement = verb.measurement.Load(verb.files);
   // The picture shows what was fitted.
@@ -52,7 +58,7 @@ int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   ReportOptions options;
   options.threads = common.Threads();
   options.scale = verb.scale;
-  fmt::print("{}", WriteReports(ParseReportFormats(verb.format), material, measurement, PictureOf(verb), options));
+  fmt::print("{}", WriteReports(formats, material, measurement, PictureOf(verb), options));
   return kExitDone;
 }
 

@@ -40,8 +40,6 @@ class FileBytes {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-using FileBytes = FileBytes;  // its name until the last caller has the new one
-
 // SHA-256: 32 bytes, and as 64 lower-case hexadecimal digits.
 std::string Sha256(std::string_view bytes);
 std::string Sha256Hex(std::string_view bytes);

@@ -62,4 +62,18 @@ Measurement ReadSeries(const std::vector<std::string>& specs, const ReadOptions&
                        options);
 }
 
+std::vector<std::filesystem::path> InputPaths(const std::vector<std::string>& files) {
+  std::vector<std::filesystem::path> paths;
+  for (const std::string& file : files) {
+    const std::filesystem::path path = ParseFileSpec(file).path;
+    std::error_code error;
+    if (!std::filesystem::is_directory(path, error)) {
+      paths.push_back(path);
+      continue;
+    }
+    for (const auto& entry : std::filesystem::directory_iterator(path, error)) paths.push_back(entry.path());
+  }
+  return paths;
+}
+
 }  // namespace lobefit

@@ -23,4 +23,7 @@ FileSpec ParseFileSpec(const std::string& text);
 // Throws InputError for a folder without files, UsageError for the same file twice.
 Measurement ReadSeries(const std::vector<std::string>& specs, const ReadOptions& options);
 
+// The files that such names stand for, folders by all files in them: what no output may overwrite.
+std::vector<std::filesystem::path> InputPaths(const std::vector<std::string>& files);
+
 }  // namespace lobefit

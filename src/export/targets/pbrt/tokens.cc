@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 
 namespace lobefit {
@@ -17,9 +18,13 @@ std::vector<PbrtToken> PbrtTokens(std::string_view text) {
       if (c == ' ' || c == '\t' || c == '\r') {
         ++i;
       } else if (c == '"') {
-        const std::size_t end = std::min(line.find('"', i + 1), line.size());
-        tokens.push_back({std::string(line.substr(i + 1, end - i - 1)), lines.line_number(), true});
-        i = end + 1;
+        std::string quoted;
+        for (++i; i < line.size() && line[i] != '"'; ++i) {
+          if (line[i] == '\\' && i + 1 < line.size()) ++i;
+          quoted += line[i];
+        }
+        ++i;
+        tokens.push_back({std::move(quoted), lines.line_number(), true});
       } else if (c == '[' || c == ']') {
         tokens.push_back({std::string(1, c), lines.line_number(), false});
         ++i;
@@ -31,6 +36,15 @@ std::vector<PbrtToken> PbrtTokens(std::string_view text) {
     }
   }
   return tokens;
+}
+
+std::string PbrtString(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : Printable(text)) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
 }
 
 }  // namespace lobefit

@@ -17,4 +17,7 @@ struct PbrtToken {
 // Words, quoted strings and brackets; comments are dropped.
 std::vector<PbrtToken> PbrtTokens(std::string_view text);
 
+// `text` in double quotes, with \\ before what would end it or begin an escape; control characters become '?'.
+std::string PbrtString(std::string_view text);
+
 }  // namespace lobefit

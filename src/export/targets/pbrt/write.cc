@@ -7,6 +7,7 @@
 #include "lobefit/base/file.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/pbrt/read.h"
+#include "lobefit/export/targets/pbrt/tokens.h"
 #include "lobefit/export/targets/spectra.h"
 #include "lobefit/export/targets/text.h"
 #include "lobefit/math/directions.h"
@@ -80,13 +81,14 @@ std::string ComponentsText(const FittedBrdf& fit, const WriteContext& context, s
   for (std::size_t l = 0; l < surface.lobes.size(); ++l) {
     const SurfaceLobe& lobe = surface.lobes[l];
     const std::string name = fmt::format("{}.lobe{}", context.name, l + 1);
-    text += fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"conductor\"\n{}", name, LobeText(fit, lobe));
+    text +=
+        fmt::format("MakeNamedMaterial {} \"string type\" \"conductor\"\n{}", PbrtString(name), LobeText(fit, lobe));
     if (lobe.normal.z < 1) {
       const std::filesystem::path map = context.File(fmt::format("_normal{}.png", l + 1));
       WriteFileAtomically(map, NormalMapPng(RotateZ(lobe.normal, -rotation)));
       written->files.push_back(map);
       maps->push_back(context.map_path + map.filename().string());
-      text += fmt::format("  \"string normalmap\" \"{}\"\n", maps->back());
+      text += fmt::format("  \"string normalmap\" {}\n", PbrtString(maps->back()));
     }
     components->push_back({name, lobe.weight});
   }
@@ -95,7 +97,7 @@ std::string ComponentsText(const FittedBrdf& fit, const WriteContext& context, s
     Spectrum reflectance = surface.diffuse;
     for (double& value : reflectance) value /= share;
     const std::string name = context.name + ".diffuse";
-    text += fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"diffuse\" {}\n", name,
+    text += fmt::format("MakeNamedMaterial {} \"string type\" \"diffuse\" {}\n", PbrtString(name),
                         ColorText(fit, "reflectance", reflectance));
     components->push_back({name, share});
   }
@@ -113,11 +115,11 @@ WrittenFiles WritePbrt(const FittedBrdf& fit, const WriteContext& context) {
     const std::string name = i == 0 ? context.name : fmt::format("{}.mix{}", context.name, i);
     const double share = components[i].share + rest.share;
     text += fmt::format(
-        "MakeNamedMaterial \"{}\" \"string type\" \"mix\" \"string materials\" [\"{}\" \"{}\"] \"float amount\" {}\n",
-        name, components[i].name, rest.name, Number9(rest.share / share));
+        "MakeNamedMaterial {} \"string type\" \"mix\" \"string materials\" [{} {}] \"float amount\" {}\n",
+        PbrtString(name), PbrtString(components[i].name), PbrtString(rest.name), Number9(rest.share / share));
     rest = {name, share};
   }
-  text += fmt::format("NamedMaterial \"{}\"\n", rest.name);
+  text += fmt::format("NamedMaterial {}\n", PbrtString(rest.name));
 
   const double rotation = CommonRotation(fit);
   std::vector<std::string> header = context.header;

@@ -1,0 +1,43 @@
+// What a verb writes never takes the place of what it reads, by whatever name.
+#include "tests/support/paths.h"
+#include "tests/support/run_program.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lobefit/base/printable.h"
+
+namespace lobefit {
+namespace {
+
+using Outputs = ProgramTest;
+
+TEST_F(Outputs, AnInputIsNeverOverwritten) {
+  const std::string sample = ReadWholeFile(test::SourceDir() / "samples/satin_plastic.csv");
+  WriteWholeFile(folder_ / "over.csv", sample);
+  ASSERT_EQ(Shell("ln -s over.csv link.csv && mkdir part && cp over.csv part/one.csv").exit_code, 0);
+  ASSERT_EQ(Shell("lobefit fit over.csv --recipe ggx --no-report --name m").exit_code, 0);
+  const std::string material = ReadWholeFile(folder_ / "m.material.json");
+  for (const char* command :
+       {"lobefit convert over.csv over.csv", "lobefit convert over.csv ./link.csv", "lobefit convert part part/one.csv",
+        "lobefit compare over.csv --recipes ggx --with m.material.json --name m --no-report"}) {
+    const ProgramResult result = Shell(command);
+    EXPECT_EQ(result.exit_code, 2) << command << result.err;
+    EXPECT_THAT(result.err, testing::HasSubstr("which would be overwritten; choose another name")) << command;
+  }
+  EXPECT_EQ(ReadWholeFile(folder_ / "over.csv"), sample);
+  EXPECT_EQ(ReadWholeFile(folder_ / "part/one.csv"), sample);
+  EXPECT_EQ(ReadWholeFile(folder_ / "m.material.json"), material);
+}
+
+// Names that end a string in the language of some target.
+TEST_F(Outputs, ExportsOfAnyNameAreReadBack) {
+  ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ggx --no-report --name m").exit_code, 0);
+  for (const char* name : {"R&D", "a\"b", "it's", "<x>", "back\\slash", "ü x"}) {
+    const ProgramResult result = Shell(
+        "lobefit export m.material.json --to pbrt,mitsuba,materialx,openpbr,gltf,osl,glsl --name " + ShellWord(name));
+    EXPECT_EQ(result.exit_code, 0) << name << result.err;
+  }
+}
+
+}  // namespace
+}  // namespace lobefit
