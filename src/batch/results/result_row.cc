@@ -115,7 +115,9 @@ std::string ResultRow(const Material& material) {
 }
 
 std::vector<std::pair<std::string, std::string>> CellsOf(std::string_view row) {
+  constexpr std::size_t kUsual = 80;
   std::vector<std::pair<std::string, std::string>> cells;
+  cells.reserve(kUsual);
   FlatObject object(&cells);
   if (!nlohmann::json::sax_parse(row, &object)) throw InputError("'" + Excerpt(row) + "' is no row of results");
   return cells;

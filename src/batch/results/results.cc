@@ -92,6 +92,7 @@ ResultTable MakeTable(const WorkList& list, const Records& records, int threads)
     const auto put = [&](const std::string& name, std::string text) {
       if (!text.empty()) row.cells.emplace_back(columns.PlaceOf(name), std::move(text));
     };
+    row.cells.reserve(parsed[r].size() + kFirst.size() + kOfTask.size() + list.extra_columns.size());
     put("id", row.task->id);
     put("file", row.task->file);
     for (std::size_t i = 0; i < list.extra_columns.size(); ++i) put(list.extra_columns[i], row.task->extra[i]);

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <fstream>
 #include <optional>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
@@ -101,11 +100,12 @@ Parsed ParseLines(std::string_view text) {
 }
 
 std::shared_ptr<const std::string> ReadText(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  auto text = std::make_shared<std::string>(file ? static_cast<std::size_t>(file.tellg()) : 0, '\0');
+  file.seekg(0);
+  file.read(text->data(), static_cast<std::streamsize>(text->size()));
   if (!file) throw InputError(path.string() + ": cannot be read; check the permissions");
-  return std::make_shared<const std::string>(text.str());
+  return text;
 }
 
 // Pieces of at most some megabytes that end with a line.
