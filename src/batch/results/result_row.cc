@@ -97,6 +97,11 @@ const std::vector<std::string>& FixedResultColumns() {
 std::string ResultRow(const Material& material) {
   Json row;
   for (const std::string& name : FixedResultColumns()) row[name] = nullptr;
+  if (material.verdict) {
+    row["verdict"] = NameOf(VerdictChoices(), material.verdict->kind);
+    row["typical_error"] = Number(100 * material.verdict->typical_error);
+    row["noise"] = Number(100 * material.verdict->noise);
+  }
   row["recipe"] = material.recipe_name;
   row["model"] = ModelText(material);
   row["format"] = material.source.format;
