@@ -21,7 +21,8 @@ const std::vector<Choice<VerdictKind>>& VerdictChoices() {
 }
 
 std::string PercentText(double share) {
-  return share <= 10 ? fmt::format("{:.2g} %", 100 * share) : std::string("over 1000 %");
+  if (!(share <= 10)) return "over 1000 %";
+  return share < 0.995 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
 }  // namespace lobefit
