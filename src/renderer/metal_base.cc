@@ -11,7 +11,8 @@ double MeanOf(const Spectrum& color) {
 
 MetalBase MetalBaseOf(const Spectrum& f0, const Spectrum& diffuse, double dielectric) {
   MetalBase result;
-  const double f = MeanOf(f0), rho = MeanOf(diffuse);
+  // Values of which the scale is free may reflect more than they receive; no base does.
+  const double f = std::min(1.0, MeanOf(f0)), rho = MeanOf(diffuse);
   if (rho > 0) {
     // With m = 1 - metalness: m b (1 - dielectric) = rho and (1 - m) b + m dielectric = f, by bisection; the first
     // grows with m from 0.
@@ -21,12 +22,8 @@ MetalBase MetalBaseOf(const Spectrum& f0, const Spectrum& diffuse, double dielec
       const double m = (low + high) / 2;
       (m * base(m) * (1 - dielectric) < rho ? low : high) = m;
     }
-    // No base reflects more than all: the diffuse part gives way.
-    for (double m = low; m > 0; m *= 0.99) {
-      low = m;
-      if (base(m) <= 1) break;
-    }
-    result.metalness = 1 - low;
+    // No base reflects more than all, base(m) <= 1: the diffuse part gives way.
+    result.metalness = 1 - std::min(low, (1 - f) / (1 - dielectric));
   }
   for (std::size_t c = 0; c < 3; ++c) {
     const double m = 1 - result.metalness;
