@@ -8,6 +8,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
 #include "lobefit/fit/ladder.h"
 #include "lobefit/fit/sel/sampling.h"
@@ -28,6 +29,10 @@ Measurement Sampled(const FitFileOptions& options, const std::string& file) {
 
 }  // namespace
 
+bool IsOneMaterial(const std::vector<std::string>& files) {
+  return files.size() == 1 && LooksLikeMaterial(ParseFileSpec(files[0]).path);
+}
+
 void FitFileOptions::AddTo(CLI::App* app) {
   app->add_option("--starts", fit.starts,
                   "descents from the best-ranked starts (default 8; five times as many for several lobes)")
@@ -41,21 +46,24 @@ FittedFile FitFile(const FitFileOptions& options, const std::vector<std::string>
                    const std::string& command) {
   const auto start = std::chrono::steady_clock::now();
   FittedFile fitted;
-  fitted.of_material = files.size() == 1 && LooksLikeMaterial(ParseFileSpec(files[0]).path);
-  fitted.measurement = fitted.of_material ? Sampled(options, files[0]) : options.measurement.LoadStated(files);
+  const bool of_material = IsOneMaterial(files);
+  fitted.measurement = of_material ? Sampled(options, files[0]) : options.measurement.LoadStated(files);
   const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   FitOptions fit = options.fit;
   fit.threads = threads;
   options.recipe.overrides().Remark(&fitted.measurement);
   Recipe recipe = options.recipe.Choose(fitted.measurement);
-  if (fitted.of_material && !recipe.sel) {
+  if (of_material && !recipe.sel) {
     throw UsageError(fmt::format(
         "{}: is a material, to which only lobes can be fitted; add --recipe sel, or give a measurement file",
         Excerpt(files[0], 200)));
   }
   std::vector<TriedModel> tried;
   if (options.recipe.IsAutomatic()) {
-    LadderChoice choice = ClimbLadder(recipe, fit, &fitted.measurement);
+    Progress progress("models", kMostTried);
+    FitOptions judged = fit;
+    judged.on_tried = [&progress] { progress.Advance(); };
+    LadderChoice choice = ClimbLadder(recipe, judged, &fitted.measurement);
     recipe = std::move(choice.recipe);
     tried = std::move(choice.tried);
   }
@@ -80,10 +88,10 @@ std::string DoubtsAbout(const Material& material) {
     return "the measurement does not determine every parameter; the document names them; try a simpler recipe";
   }
   if (material.verdict && material.verdict->kind == VerdictKind::kDoesNotDescribe) {
-    return fmt::format("the model does not describe the measurement: its typical error is {}; {}",
-                       PercentText(material.verdict->typical_error),
-                       material.verdict->advice.empty() ? "look at the values with `lobefit info`"
-                                                        : material.verdict->advice);
+    return fmt::format(
+        "the model does not describe the measurement: its typical error is {}; {}",
+        PercentText(material.verdict->typical_error),
+        material.verdict->advice.empty() ? "look at the values with `lobefit info`" : material.verdict->advice);
   }
   return "";
 }

@@ -26,8 +26,10 @@ struct FitFileOptions {
 struct FittedFile {
   Measurement measurement;  // without what was set aside
   Material material;
-  bool of_material = false;  // the file was a material, to which lobes were fitted
 };
+
+// Whether the input is a material, to which lobes are fitted.
+bool IsOneMaterial(const std::vector<std::string>& files);
 
 // Reads the files as one measurement, selects, chooses the recipe, fits. `command` is recorded in the material. Throws
 // UsageError and InputError.

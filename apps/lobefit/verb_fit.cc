@@ -32,7 +32,7 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   MakeFolder(folder);
 
   const std::string stem = SeriesName(verb.files);
-  const bool of_material = verb.files.size() == 1 && LooksLikeMaterial(ParseFileSpec(verb.files[0]).path);
+  const bool of_material = IsOneMaterial(verb.files);
   // A table of lobes must not overwrite the material that it was sampled from.
   const std::string name = !verb.name.empty() ? verb.name
                            : of_material      ? stem.substr(0, stem.find('.')) + ".sel"

@@ -292,7 +292,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   std::vector<std::string> remarks = measurement->remarks;
   const auto search_time = std::chrono::steady_clock::now();
   // Noise is estimated from a fit's residuals: first under a metric that takes every value.
-  const bool needs_noise = recipe.metric == Metric::kAsinh && !(recipe.noise.floor > 0 && recipe.noise.relative > 0);
+  const bool needs_noise = recipe.metric == Metric::kAsinh && !recipe.noise.IsKnown();
   if (needs_noise) recipe.metric = Metric::kCubeRoot;
   std::optional<Found> found;
   found.emplace(recipe, *measurement, samples, incidences, options, &pool);

@@ -18,6 +18,7 @@
 #include "lobefit/fit/search/search.h"
 #include "lobefit/fit/search/starts.h"
 #include "lobefit/measurement/incidence.h"
+#include "lobefit/recipe/free_scale.h"
 
 namespace lobefit {
 namespace {
@@ -40,15 +41,6 @@ struct Rung {
     return std::accumulate(mean_square.begin(), mean_square.end(), 0.0) / static_cast<double>(mean_square.size());
   }
 };
-
-void LiftReflectanceBounds(Recipe* recipe) {
-  const std::vector<Parameter> parameters = Parameters(recipe->model);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].group == ParameterGroup::kShape || !parameters[i].per_channel) continue;
-    recipe->parameters[i].low = 0;
-    recipe->parameters[i].high = 1e12;
-  }
-}
 
 std::vector<std::size_t> SpreadChannels(std::size_t channels) {
   const std::size_t count = std::min(channels, kMostChannels);
@@ -77,9 +69,12 @@ class Ladder {
  public:
   Ladder(const Recipe& simplest, const FitOptions& options, const Measurement& measurement)
       : simplest_(simplest),
+        wanted_(simplest.metric),
         options_(options),
         pool_(std::max(1, options.threads)),
         scaled_(simplest.model.lobes[0].fresnel == Fresnel::kNone) {
+    // The noise that gives asinh its knee is estimated from the fit of the model that is chosen (fit.cc).
+    if (simplest_.metric == Metric::kAsinh && !simplest_.noise.IsKnown()) simplest_.metric = Metric::kCubeRoot;
     options_.starts = std::min(options_.starts, kStarts);
     options_.subsample = kSamples / 4;
     const Incidences incidences = GroupByIncidence(measurement);
@@ -107,55 +102,9 @@ class Ladder {
   // Judges the model and keeps it, searched from the ellipses of `base` where one is given; null where it cannot be
   // fitted.
   const Rung* Try(Model model, const std::string& name, const Rung* base = nullptr) {
-    Rung rung;
-    rung.recipe = simplest_;
-    rung.recipe.name = scaled_ ? name + "-scaled" : name;
-    if (scaled_) {
-      for (Lobe& lobe : model.lobes) {
-        if (lobe.fresnel == Fresnel::kSchlick) lobe.fresnel = Fresnel::kNone;
-      }
-    }
-    if (!WhyNotEvaluable(model).empty()) return nullptr;
-    rung.recipe.model = model;
-    rung.recipe.parameters = DefaultRecipe(model, name).parameters;
-    if (scaled_) LiftReflectanceBounds(&rung.recipe);
-    const Recipe wanted = rung.recipe;
-    if (base != nullptr) StartAt(base->shapes, &rung.recipe);
-    rung.tried.name = wanted.name;
-    try {
-      const Recipe recipe = WithKnots(rung.recipe, all_, channels_, options_, &pool_);
-      const Layout layout(recipe, channels_);
-      rung.tried.free_parameters = layout.size();
-      const std::vector<DistinctMinimum> minima = FindMinima(Problem(all_, recipe), layout, all_, options_, &pool_);
-      if (minima.empty()) return nullptr;
-      const ParameterValues values = layout.Report(minima[0].solution.u.data());
-      const std::vector<double>& reflectance = values[FirstFresnel(recipe.model, 0)];
-      rung.above_one = recipe.model.lobes[0].fresnel == Fresnel::kSchlick &&
-                       std::any_of(reflectance.begin(), reflectance.end(), [](double f0) { return f0 >= 1 - 1e-6; });
-      for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
-        const auto first = values.begin() + static_cast<std::ptrdiff_t>(FirstParameter(recipe.model, l));
-        rung.shapes.emplace_back(first, first + static_cast<std::ptrdiff_t>(kEllipseParameters));
-      }
-      rung.mean_square.assign(folds_.size(), kNan);
-      pool_.Run(folds_.size(), [&](std::size_t k) {
-        ThreadPool alone(1);
-        const Problem training(folds_[k].training, recipe), test(folds_[k].test, recipe);
-        SolveOptions finish;
-        finish.function_tolerance = 1e-6;
-        finish.max_iterations = 60;
-        const Solution solution = Solve(training, layout, minima[0].solution.u, finish, &alone);
-        std::vector<std::vector<double>> f_r;
-        ModelValues(test.kernel_samples(), layout.ToKernel(solution.u.data()), 0, test.size(), &f_r);
-        rung.mean_square[k] =
-            SumSquares(recipe.metric, recipe.noise, recipe.weighting, true, folds_[k].test, f_r).MeanSquare();
-      });
-    } catch (const InputError&) {
-      return nullptr;  // fewer samples than parameters
-    }
-    rung.recipe = wanted;  // the whole measurement may reach further knots
-    if (!std::isfinite(rung.mean())) return nullptr;
-    rungs_.push_back(std::move(rung));
-    return &rungs_.back();
+    const Rung* const kept = Judge(std::move(model), name, base);
+    if (options_.on_tried) options_.on_tried();
+    return kept;
   }
 
   const Rung& First() const { return rungs_[0]; }
@@ -207,18 +156,71 @@ class Ladder {
     for (const Rung& rung : rungs_) choice.tried.push_back(rung.tried);
     const Rung& rung = rungs_[chosen];
     choice.recipe = rung.recipe;
+    choice.recipe.metric = wanted_;
     // Several lobes have hundreds of starts, and those of a spectrum cost most; the search was made on the subsample.
     if (rung.shapes.size() > 1 || channels_.size() == kMostChannels) StartAt(rung.shapes, &choice.recipe);
     choice.recipe.reason = fmt::format(
         "of {} models the simplest whose error on held-out incident directions ({:.3g}) is within one standard error "
-        "of "
-        "the least ({:.3g}, {}); one lobe of the simplest kind: {:.3g}",
+        "of the least ({:.3g}, {}); one lobe of the simplest kind: {:.3g}",
         rungs_.size(), rung.tried.held_out, std::sqrt(best.mean()), best.tried.name, std::sqrt(rungs_[0].mean()));
     return choice;
   }
 
  private:
+  const Rung* Judge(Model model, const std::string& name, const Rung* base) {
+    Rung rung;
+    rung.recipe = simplest_;
+    rung.recipe.name = scaled_ ? name + "-scaled" : name;
+    if (scaled_) {
+      for (Lobe& lobe : model.lobes) {
+        if (lobe.fresnel == Fresnel::kSchlick) lobe.fresnel = Fresnel::kNone;
+      }
+    }
+    if (!WhyNotEvaluable(model).empty()) return nullptr;
+    rung.recipe.model = model;
+    rung.recipe.parameters = DefaultRecipe(model, name).parameters;
+    if (scaled_) LiftReflectanceBounds(&rung.recipe);
+    const Recipe wanted = rung.recipe;
+    if (base != nullptr) StartAt(base->shapes, &rung.recipe);
+    rung.tried.name = wanted.name;
+    try {
+      const Recipe recipe = WithKnots(rung.recipe, all_, channels_, options_, &pool_);
+      const Layout layout(recipe, channels_);
+      rung.tried.free_parameters = layout.size();
+      const std::vector<DistinctMinimum> minima = FindMinima(Problem(all_, recipe), layout, all_, options_, &pool_);
+      if (minima.empty()) return nullptr;
+      const ParameterValues values = layout.Report(minima[0].solution.u.data());
+      const std::vector<double>& reflectance = values[FirstFresnel(recipe.model, 0)];
+      rung.above_one = recipe.model.lobes[0].fresnel == Fresnel::kSchlick &&
+                       std::any_of(reflectance.begin(), reflectance.end(), [](double f0) { return f0 >= 1 - 1e-6; });
+      for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
+        const auto first = values.begin() + static_cast<std::ptrdiff_t>(FirstParameter(recipe.model, l));
+        rung.shapes.emplace_back(first, first + static_cast<std::ptrdiff_t>(kEllipseParameters));
+      }
+      rung.mean_square.assign(folds_.size(), kNan);
+      pool_.Run(folds_.size(), [&](std::size_t k) {
+        ThreadPool alone(1);
+        const Problem training(folds_[k].training, recipe), test(folds_[k].test, recipe);
+        SolveOptions finish;
+        finish.function_tolerance = 1e-6;
+        finish.max_iterations = 60;
+        const Solution solution = Solve(training, layout, minima[0].solution.u, finish, &alone);
+        std::vector<std::vector<double>> f_r;
+        ModelValues(test.kernel_samples(), layout.ToKernel(solution.u.data()), 0, test.size(), &f_r);
+        rung.mean_square[k] =
+            SumSquares(recipe.metric, recipe.noise, recipe.weighting, true, folds_[k].test, f_r).MeanSquare();
+      });
+    } catch (const InputError&) {
+      return nullptr;  // fewer samples than parameters
+    }
+    rung.recipe = wanted;  // the whole measurement may reach further knots
+    if (!std::isfinite(rung.mean())) return nullptr;
+    rungs_.push_back(std::move(rung));
+    return &rungs_.back();
+  }
+
   Recipe simplest_;
+  Metric wanted_;
   FitOptions options_;
   std::vector<std::string> channels_;
   ThreadPool pool_;
@@ -297,14 +299,18 @@ void AddAdvice(Material* material) {
   if (!material->verdict) return;
   Verdict& verdict = *material->verdict;
   if (verdict.kind != VerdictKind::kRough && verdict.kind != VerdictKind::kDoesNotDescribe) return;
-  const TriedModel* best = nullptr;
+  const TriedModel *best = nullptr, *chosen = nullptr;
   for (const TriedModel& model : material->tried) {
-    if (!model.chosen && model.ratio < 1 && (best == nullptr || model.ratio < best->ratio)) best = &model;
+    if (model.chosen) chosen = &model;
+    if (best == nullptr || model.held_out < best->held_out) best = &model;
   }
+  // Less is worth nothing (compare.h).
+  constexpr double kBetter = 0.99;
   if (material->misfit && material->misfit->flagged && !material->misfit->where.empty()) {
     verdict.advice = "it fits worst " + material->misfit->where;
-  } else if (best != nullptr) {
-    verdict.advice = fmt::format("{} predicted {:.0f} % better than one lobe", best->name, 100 * (1 - best->ratio));
+  } else if (chosen != nullptr && best->held_out < kBetter * chosen->held_out) {
+    verdict.advice = fmt::format("{} predicted {:.0f} % better, with {} parameters", best->name,
+                                 100 * (1 - best->held_out / chosen->held_out), best->free_parameters);
   } else if (material->tried.empty()) {
     verdict.advice = "leave --recipe out: richer models are then tried";
   }

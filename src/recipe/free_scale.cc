@@ -1,6 +1,22 @@
 #include "lobefit/recipe/free_scale.h"
 
 namespace lobefit {
+namespace {
+
+bool IsReflectance(const Parameter& parameter) {
+  return parameter.group != ParameterGroup::kShape && parameter.free && parameter.low == 0 && !parameter.shared;
+}
+
+}  // namespace
+
+void LiftReflectanceBounds(Recipe* recipe) {
+  const std::vector<Parameter> parameters = Parameters(recipe->model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (!IsReflectance(parameters[i])) continue;
+    recipe->parameters[i].low = 0;
+    recipe->parameters[i].high = 1e12;
+  }
+}
 
 Recipe WithFreeScale(const Recipe& recipe) {
   if (recipe.sel) return recipe;  // lobes of a table have no bounds of reflectance
@@ -16,11 +32,9 @@ Recipe WithFreeScale(const Recipe& recipe) {
     for (std::size_t k = 0; k < before.size(); ++k) {
       if (before[k].name == after[i].name && k < recipe.parameters.size()) free.parameters[i] = recipe.parameters[k];
     }
-    if (after[i].group == ParameterGroup::kShape) continue;
-    free.parameters[i].fixed.clear();
-    free.parameters[i].low = 0;
-    free.parameters[i].high = 1e12;
+    if (IsReflectance(after[i])) free.parameters[i].fixed.clear();
   }
+  LiftReflectanceBounds(&free);
   free.name = recipe.name + "-free-scale";
   return free;
 }

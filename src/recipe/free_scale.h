@@ -10,4 +10,7 @@ namespace lobefit {
 // to each other. Metals' indices are dropped with their Fresnel term.
 Recipe WithFreeScale(const Recipe& recipe);
 
+// Amplitudes and albedos (free, from 0, one a channel) without the bound of 1.
+void LiftReflectanceBounds(Recipe* recipe);
+
 }  // namespace lobefit

@@ -169,7 +169,8 @@ Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<dou
         group.score += r * row;
         sums.hessian.selfadjointView<Eigen::Upper>().rankUpdate(row);
       }
-      for (const std::size_t bin : BinsOf(kernel.lobes.front().shape.slope, samples.wi(begin + i), samples.wo(begin + i))) {
+      for (const std::size_t bin :
+           BinsOf(kernel.lobes.front().shape.slope, samples.wi(begin + i), samples.wo(begin + i))) {
         if (bin == kBins) continue;
         group.sum[bin] += residual;
         group.count[bin] += 1;

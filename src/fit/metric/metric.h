@@ -26,6 +26,8 @@ enum class Metric {
 struct NoiseModel {
   double floor = 0;     // 1/sr
   double relative = 0;  // of 1
+  // Both are, as asinh needs them.
+  bool IsKnown() const { return floor > 0 && relative > 0; }
 };
 
 struct MetricRow {

@@ -67,7 +67,7 @@ void ResidualsOf(const Transform& transform, const Samples& samples, std::size_t
 std::vector<Metric> KnownMetrics(const NoiseModel& noise) {
   std::vector<Metric> metrics;
   for (const MetricRow& row : MetricTable()) {
-    const bool known = row.curve != Curve::kAsinh || (noise.floor > 0 && noise.relative > 0);
+    const bool known = row.curve != Curve::kAsinh || noise.IsKnown();
     if (known) metrics.push_back(row.metric);
   }
   return metrics;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 namespace lobefit {
 
@@ -14,6 +15,8 @@ struct FitOptions {
   // Samples of the subsample on which starts are ranked and descended; fits with at most three times as many use all
   // samples throughout. Larger ones go through a second level of 40 000 samples.
   std::size_t subsample = 2000;
+  // Called after each model that the automatic choice has judged (ladder.h).
+  std::function<void()> on_tried;
 };
 
 }  // namespace lobefit
