@@ -37,7 +37,8 @@ TEST_F(CompareVerb, ShowsATableForPeople) {
 }
 
 TEST_F(CompareVerb, ComparesWithAMaterialMadeByHand) {
-  ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ellipsoid --no-report --name mine").exit_code, 0);
+  ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ellipsoid --no-report --name mine").exit_code,
+            0);
   const ProgramResult result = Shell(
       "lobefit compare $SOURCE/samples/satin_plastic.csv --recipes ggx --with mine.material.json --name out --json");
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -65,7 +66,8 @@ TEST_F(CompareVerb, ShowsATableOfLobesBesideModels) {
 }
 
 TEST_F(CompareVerb, LobesCanBeFittedToAMaterial) {
-  ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ellipsoid --no-report --name mine").exit_code, 0);
+  ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ellipsoid --no-report --name mine").exit_code,
+            0);
   const ProgramResult result = Shell("lobefit fit mine.material.json --recipe sel --theta-i 20:40");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, testing::HasSubstr("24 incident directions, 2 squared ellipsoidal lobes"));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/folder_test.h"
 #include "tests/support/paths.h"
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -33,17 +34,8 @@ inline void WriteWholeFile(const std::filesystem::path& path, const std::string&
 }
 
 // A test with an empty folder as its working directory.
-class ProgramTest : public testing::Test {
+class ProgramTest : public FolderTest {
  protected:
-  void SetUp() override {
-    std::string name = std::string(testing::UnitTest::GetInstance()->current_test_info()->test_suite_name()) + "." +
-                       testing::UnitTest::GetInstance()->current_test_info()->name() + "." + std::to_string(getpid());
-    for (char& c : name) c = c == '/' ? '_' : c;
-    folder_ = std::filesystem::path(testing::TempDir()) / name;
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   // Runs a shell command in the folder; `lobefit` is the built program, $SOURCE the repository.
   ProgramResult Shell(const std::string& command) const {
     const std::string program = test::ProgramPath().parent_path().string();
@@ -57,17 +49,6 @@ class ProgramTest : public testing::Test {
     std::filesystem::remove(folder_ / "stderr.txt");
     return result;
   }
-
-  // Names of the files in the folder, sorted.
-  std::vector<std::string> Files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_))
-      names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace lobefit

@@ -93,8 +93,8 @@ LobeShape::LobeShape(const Lobe& lobe, const SlopeCoordinates& ellipse, const st
   const NdfFamily family = FamilyOf(lobe.ndf);
   if (family == NdfFamily::kStudent) {
     gamma = profile[0];
-    masking = std::make_shared<const ProfileMasking>(PowerLawGrid(),
-                                                     Profile(PowerLawGrid()->spline(), std::vector<double>{gamma - 2.0}));
+    masking = std::make_shared<const ProfileMasking>(
+        PowerLawGrid(), Profile(PowerLawGrid()->spline(), std::vector<double>{gamma - 2.0}));
   }
   if (family == NdfFamily::kProfile)
     masking = std::make_shared<const ProfileMasking>(GridOf(lobe), Profile(GridOf(lobe)->spline(), profile));
@@ -197,8 +197,7 @@ void SpecularLobe(const DirectionArrays& directions, const Lobe& lobe, const Lob
   for (std::size_t i = 0; i < d.count; ++i) {
     specular[i] = general.Evaluate({d.wi_x[i], d.wi_y[i], d.wi_z[i]}, {d.wo_x[i], d.wo_y[i], d.wo_z[i]}, &cos_d[i],
                                    gradient != nullptr ? by_shape.data() : nullptr);
-    for (std::size_t j = 0; gradient != nullptr && j < by_shape.size(); ++j)
-      gradient[j * d.count + i] = by_shape[j];
+    for (std::size_t j = 0; gradient != nullptr && j < by_shape.size(); ++j) gradient[j * d.count + i] = by_shape[j];
   }
 }
 
@@ -216,8 +215,7 @@ double FresnelFactor(Fresnel fresnel, const double* parameters, double cos_d, do
       return FresnelDielectric(cos_d, parameters[0], nullptr, dF);
     case Fresnel::kSchlickF82: {
       SchlickF82Gradient gradient = {};
-      const double value =
-          FresnelSchlickF82(cos_d, parameters[0], parameters[1], dF != nullptr ? &gradient : nullptr);
+      const double value = FresnelSchlickF82(cos_d, parameters[0], parameters[1], dF != nullptr ? &gradient : nullptr);
       if (dF != nullptr) dF[0] = gradient.df0, dF[1] = gradient.dtint;
       return value;
     }

@@ -70,8 +70,8 @@ void AddArea(const Ellipse& p, const Area& area, double ux, double uy, double fa
 
 }  // namespace
 
-void RadialLobe(const DirectionArrays& d, const SlopeCoordinates& shape, const ProfileMasking& profile,
-                Masking masking, double* specular, double* cos_d, double* gradient) {
+void RadialLobe(const DirectionArrays& d, const SlopeCoordinates& shape, const ProfileMasking& profile, Masking masking,
+                double* specular, double* cos_d, double* gradient) {
   const double a = std::exp(shape.v[2]), c = std::exp(shape.v[4]);
   const Ellipse p = {shape.v[0], shape.v[1], a, shape.v[3], c, 1 / a, 1 / c, 0.25 * kInvPi / (a * c)};
   const Profile& f = profile.profile();

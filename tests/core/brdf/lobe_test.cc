@@ -168,8 +168,8 @@ TEST(SpecularLobe, ProfilesAreTheGeneralMicrofacetBrdf) {
       for (const Pair& pair : Pairs(60)) {
         double c = 0;
         const double value = SpecularLobe(pair.wi, pair.wo, lobe, shape, &c, by_shape.data());
-        const double general = MicrofacetSpecular(*distribution, ShadowingOf(masking, shape.slope), pair.wo, pair.wi,
-                                                  by_parameter.data());
+        const double general =
+            MicrofacetSpecular(*distribution, ShadowingOf(masking, shape.slope), pair.wo, pair.wi, by_parameter.data());
         EXPECT_NEAR(value, general, 1e-11 * general);
         for (std::size_t j = 0; j < size; ++j) {
           double chained = 0;
@@ -231,12 +231,9 @@ TEST(DistributionOf, BeckmannWithoutTiltHasItsOwnAlphas) {
 TEST(FresnelFactorTest, ValuesAndDerivatives) {
   const double conductor[] = {0.2, 3.9}, dielectric[] = {1.5}, f0[] = {0.04}, scale[] = {2.5}, f82[] = {0.6, 0.8},
                curve[] = {0.9, 0.5, 0.2, 0.1, 0.15, 0.3};
-  const std::pair<Fresnel, const double*> cases[] = {{Fresnel::kConductor, conductor},
-                                                     {Fresnel::kDielectric, dielectric},
-                                                     {Fresnel::kSchlick, f0},
-                                                     {Fresnel::kSchlickF82, f82},
-                                                     {Fresnel::kCurve, curve},
-                                                     {Fresnel::kNone, scale}};
+  const std::pair<Fresnel, const double*> cases[] = {
+      {Fresnel::kConductor, conductor}, {Fresnel::kDielectric, dielectric}, {Fresnel::kSchlick, f0},
+      {Fresnel::kSchlickF82, f82},      {Fresnel::kCurve, curve},           {Fresnel::kNone, scale}};
   for (const auto& [fresnel, parameters] : cases) {
     for (const double cos_d : {0.05, 0.4, 0.9, 1.0}) {
       double dF[kMaxFresnelParameters];

@@ -283,9 +283,7 @@ TEST(StudentDistribution, GradientsAreDerivatives) {
   unsigned seed = 320;
   for (const double gamma : {1.6, 2.0, 3.5, 20.0, 90.0}) {
     ExpectGradients(
-        [](const std::vector<double>& x) {
-          return std::make_shared<StudentDistribution>(PowerLaw(x[5]), SlopesOf(x));
-        },
+        [](const std::vector<double>& x) { return std::make_shared<StudentDistribution>(PowerLaw(x[5]), SlopesOf(x)); },
         {0.3, 0.2, 0.4, 0.1, -0.2, gamma}, seed++);
   }
 }
@@ -312,8 +310,7 @@ TEST(StudentLaws, TendsToBeckmann) {
     const double t = -std::log(D * std::pow(m.z, 4) / SlopeNormalisation(slopes));
     EXPECT_NEAR(std::log(StudentD(1e8, slopes, m) / D), (0.5 * t * t - t) / 1e8, 1e-12 * (1 + t * t * t));
     const Vec3 u = UpperWithHorizon(&random);
-    EXPECT_NEAR(StudentDistribution(PowerLaw(100), slopes).Sigma(u), SmithSigma(slopes, u),
-                3e-3 * slopes.alpha_x);
+    EXPECT_NEAR(StudentDistribution(PowerLaw(100), slopes).Sigma(u), SmithSigma(slopes, u), 3e-3 * slopes.alpha_x);
   }
 }
 
