@@ -62,7 +62,8 @@ Moments MomentsAt(const Profile& profile, double a) {
   static const QuadratureRule rule = GaussLegendre(32);
   const std::size_t K = profile.q().size(), stride = K + 1;
   std::vector<double> moments(3 * stride);
-  ProfileRule(profile.spline(), a, rule, 8).Apply(profile, false, moments.data(), stride);
+  ProfileRule(profile.spline(), a, rule, 8)
+      .Apply(profile, ProfileTail(profile.tail_exponent()), false, moments.data(), stride);
   return {moments[0], moments[stride], {moments.begin() + 1, moments.begin() + static_cast<std::ptrdiff_t>(stride)}};
 }
 

@@ -64,6 +64,8 @@ class Profile {
 
   // E(u) and the local exponent g(u); dE/dq_k = B_k.
   double Excess(double u, double* g = nullptr) const;
+  // E in an interval of the spline: the four coefficients of its cubic in u - Left(interval).
+  const double* Cubic(std::size_t interval) const { return cubics_.data() + 4 * interval; }
   // Z / pi - 1, without the rounding of the subtraction: 0 for q = 0. Z_k / Z = d ln Z / dq_k.
   double mass_excess() const { return mass_excess_; }
   const std::vector<double>& dlog_mass() const { return dlog_mass_; }

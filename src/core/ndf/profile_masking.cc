@@ -36,11 +36,10 @@ double SMinusAtan(double s, double a) {
 struct PowerMoments {
   double value[3], dlog[3];
 };
-PowerMoments PowerLawMoments(double a, double c) {
+PowerMoments PowerLawMoments(double a, const ProfileTail& tail) {
+  const double c = tail.exponent, dlog_ratio = tail.dlog_ratio;
   const double A = 1.0 + a * a, y = 1.0 / A;
-  double dlog_ratio;
-  const double ratio = GammaHalfRatio(c - 0.5, &dlog_ratio);  // Gamma(c) / Gamma(c - 1/2)
-  const double p2 = std::sqrt(kPi * A) / ratio;
+  const double p2 = std::sqrt(kPi * A) / tail.gamma_ratio;
   // F = 2F1(c - 3/2, 1; c; y).
   double F = 1, dF = 0, term = 1, dlog = 0;
   for (int n = 0; n < 400 && term > 1e-19 * F; ++n) {
@@ -61,23 +60,40 @@ PowerMoments PowerLawMoments(double a, double c) {
 
 ProfileRule::ProfileRule(const ProfileSpline& spline, double a, const QuadratureRule& rule, int parts)
     : a_(a), end_(spline.knots().back()) {
-  if (a >= end_) return;
+  if (a < end_) AddPanels(spline, rule, parts);
+  u_ = std::log1p(end_ * end_);
+  f_ggx_ = std::exp(-2.0 * u_);
+  basis_.resize(spline.size());
+  spline.Evaluate(u_, basis_.data());
+  if (a >= end_) {
+    log_shift_ = u_ - std::log1p(a * a);
+  } else {
+    const double Y = 1.0 + end_ * end_, s = std::sqrt((end_ - a) * (end_ + a));
+    edge_ = {Y * SMinusAtan(s, a), Y * std::atan2(s, a)};
+  }
+  double unused[3];
+  ggx_ = TailMoments(ProfileTail(2.0), unused);
+}
+
+void ProfileRule::AddPanels(const ProfileSpline& spline, const QuadratureRule& rule, int parts) {
+  const double a = a_;
   // Radii at which panels end: the knots beyond a, then twice and four times the last; within the first panel the
   // kernel turns at s = a.
-  std::vector<double> ends;
-  for (const double r : spline.knots()) {
-    if (r > a) ends.push_back(std::sqrt((r - a) * (r + a)));
-  }
-  for (const double factor : {2.0, 4.0}) ends.push_back(std::sqrt((factor * end_ - a) * (factor * end_ + a)));
-  std::vector<double> breaks;
-  for (double s = a; s > 0 && s < 0.7 * ends[0]; s *= 2) breaks.push_back(s);
-  breaks.insert(breaks.end(), ends.begin(), ends.end());
+  const auto at_radius = [a](double r) { return std::sqrt((r - a) * (r + a)); };
+  const std::vector<double>& knots = spline.knots();
+  const std::size_t first =
+      static_cast<std::size_t>(std::upper_bound(knots.begin(), knots.end(), a) - knots.begin()) - 1;
   double from = 0;
-  for (const double to : breaks) {
+  const auto add = [&](std::size_t interval, double to) {
     const double step = (to - from) / parts;
-    for (int part = 0; part < parts; ++part) AddPanel(spline, from + step * part, from + step * (part + 1), rule);
+    for (int part = 0; part < parts; ++part)
+      AddPanel(spline, interval, from + step * part, from + step * (part + 1), rule);
     from = to;
-  }
+  };
+  for (double s = a; s > 0 && s < 0.7 * at_radius(knots[first + 1]); s *= 2) add(first, s);
+  for (std::size_t i = first; i + 1 < knots.size(); ++i) add(i, at_radius(knots[i + 1]));
+  for (const double factor : {2.0, 4.0}) add(knots.size() - 1, at_radius(factor * end_));
+  points_.Finish();
   end_ *= 4;
   const double A = 1.0 + a * a;
   double j = 1, h = 1, sum_e = 0, sum_h = 0;
@@ -93,36 +109,26 @@ ProfileRule::ProfileRule(const ProfileSpline& spline, double a, const Quadrature
   }
 }
 
-void ProfileRule::AddPanel(const ProfileSpline& spline, double from, double to, const QuadratureRule& rule) {
+void ProfileRule::AddPanel(const ProfileSpline& spline, std::size_t interval, double from, double to,
+                           const QuadratureRule& rule) {
   const double half = 0.5 * (to - from), center = from + half;
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
     const double s = center + half * rule.nodes[i], angle = std::atan2(s, a_);
     const double u = std::log1p(a_ * a_ + s * s), w = 2.0 * half * rule.weights[i] * std::exp(-2.0 * u);
-    u_.push_back(u);
-    weight_.push_back({w * s * SMinusAtan(s, a_), w * s * angle, w});
-    basis_.resize(basis_.size() + spline.size());
-    spline.Evaluate(u, basis_.data() + basis_.size() - spline.size());
+    points_.Add(spline, interval, u, {w * s * SMinusAtan(s, a_), w * s * angle, w});
   }
 }
 
-void ProfileRule::Apply(const Profile& profile, bool minus_ggx, double* moments, std::size_t stride) const {
+void ProfileRule::Apply(const Profile& profile, const ProfileTail& tail, bool minus_ggx, double* moments,
+                        std::size_t stride) const {
   const std::size_t K = profile.q().size();
   for (std::size_t m = 0; m < 3; ++m) std::fill_n(moments + m * stride, K + 1, 0.0);
-  const double mass = 1.0 + profile.mass_excess();
-  for (std::size_t i = 0; i < u_.size(); ++i) {
-    const double* basis = basis_.data() + i * K;
-    double excess = 0;
-    for (std::size_t k = 0; k < K; ++k) excess += profile.q()[k] * basis[k];
-    const double f = std::exp(excess) / mass;
-    const double difference = minus_ggx ? (std::expm1(excess) - profile.mass_excess()) / mass : f;
-    for (std::size_t m = 0; m < 3; ++m) {
-      double* to = moments + m * stride;
-      to[0] += weight_[i][m] * difference;
-      const double weighted = weight_[i][m] * f;
-      for (std::size_t k = 0; k < K; ++k) to[k + 1] += weighted * basis[k];
-    }
+  points_.AddMoments(profile, minus_ggx, moments, stride);
+  const double inverse = 1.0 / (1.0 + profile.mass_excess());
+  for (std::size_t m = 0; m < 3; ++m) {
+    for (std::size_t k = 0; k <= K; ++k) moments[m * stride + k] *= inverse;
   }
-  AddTail(profile, minus_ggx, moments, stride);
+  AddTail(profile, tail, minus_ggx, moments, stride);
   // So far the derivatives lack -Z_k / Z times the value; everything is in units of pi.
   double ggx[3] = {0, 0, 0};
   if (minus_ggx) {
@@ -138,56 +144,53 @@ void ProfileRule::Apply(const Profile& profile, bool minus_ggx, double* moments,
   }
 }
 
+ProfileTail::ProfileTail(double c) : exponent(c), gamma_ratio(GammaHalfRatio(c - 0.5, &dlog_ratio)) {}
+
 // Beyond the circle of radius R = end_ f falls as (1 + t)^-c. For a < R: with Y = 1 + R^2, s_R = sqrt(R^2 - a^2),
 //   P2: f_R Y^(1/2) sum j_n Y^-n / (c + n - 1/2)
 //   T:  f_R / (c - 1) [Y atan(s_R / a) + (a / 2) Y^(1/2) sum e_n Y^-n / (c + n - 1/2)]
 //   M:  f_R / (c - 1) [Y (s_R - a atan(s_R / a)) + (1 / 2) Y^(3/2) sum h_n Y^-n / (c + n - 3/2)].
-void ProfileRule::AddTail(const Profile& profile, bool minus_ggx, double* moments, std::size_t stride) const {
-  const std::size_t K = profile.q().size();
-  const double Y = 1.0 + end_ * end_, root = std::sqrt(Y), u = std::log1p(end_ * end_);
-  // Values for f_R = 1 and the derivatives of their logarithms by c.
-  double log_shift = 0;  // a beyond R: f at a instead
-  const auto tail = [&](double c, double* dlog) {
-    std::array<double, 3> value;
-    if (a_ >= end_) {
-      const PowerMoments power = PowerLawMoments(a_, c);
-      const double scale = std::exp(c * log_shift);
-      for (std::size_t m = 0; m < 3; ++m) {
-        value[m] = power.value[m] * scale;
-        dlog[m] = power.dlog[m] + log_shift;
-      }
-      return value;
-    }
-    double sums[3] = {0, 0, 0}, slopes[3] = {0, 0, 0}, power = 1;
-    for (std::size_t n = 0; n < j_.size(); ++n, power /= Y) {
-      const double half = 1.0 / (c + static_cast<double>(n) - 0.5), more = 1.0 / (c + static_cast<double>(n) - 1.5);
-      const double terms[3] = {h_[n] * more, e_[n] * half, j_[n] * half};
-      for (std::size_t m = 0; m < 3; ++m) {
-        sums[m] += power * terms[m];
-        slopes[m] -= power * terms[m] * (m == 0 ? more : half);
-      }
-    }
-    const double s = std::sqrt((end_ - a_) * (end_ + a_)), rest = 1.0 / (c - 1.0);
-    const double factor[3] = {0.5 * Y * root * rest, 0.5 * a_ * root * rest, root};
-    const double edge[3] = {Y * SMinusAtan(s, a_) * rest, Y * std::atan2(s, a_) * rest, 0};
+std::array<double, 3> ProfileRule::TailMoments(const ProfileTail& tail, double* dlog) const {
+  std::array<double, 3> value;
+  if (a_ >= end_) {
+    const PowerMoments power = PowerLawMoments(a_, tail);
+    const double scale = std::exp(tail.exponent * log_shift_);
     for (std::size_t m = 0; m < 3; ++m) {
-      value[m] = edge[m] + factor[m] * sums[m];
-      dlog[m] = (value[m] > 0 ? factor[m] * slopes[m] / value[m] : 0.0) - (m < 2 ? rest : 0.0);
+      value[m] = power.value[m] * scale;
+      dlog[m] = power.dlog[m] + log_shift_;
     }
     return value;
-  };
-  if (a_ >= end_) log_shift = u - std::log1p(a_ * a_);
-  std::vector<double> basis(K);
-  profile.spline().Evaluate(u, basis.data());
-  const double mass = 1.0 + profile.mass_excess(), f_ggx = std::exp(-2.0 * u);
-  const double f = f_ggx * std::exp(profile.Excess(u)) / mass;
-  double dlog[3], unused[3];
-  const std::array<double, 3> value = tail(profile.tail_exponent(), dlog);
-  const std::array<double, 3> ggx = minus_ggx ? tail(2.0, unused) : std::array<double, 3>{};
+  }
+  const double Y = 1.0 + end_ * end_, root = std::sqrt(Y), inverse = 1.0 / Y, c = tail.exponent;
+  double sums[3] = {0, 0, 0}, slopes[3] = {0, 0, 0}, power = 1, more = 1.0 / (c - 1.5);
+  for (std::size_t n = 0; n < j_.size(); ++n, power *= inverse) {
+    const double half = 1.0 / (c + static_cast<double>(n) - 0.5);
+    const double terms[3] = {h_[n] * more, e_[n] * half, j_[n] * half};
+    for (std::size_t m = 0; m < 3; ++m) {
+      sums[m] += power * terms[m];
+      slopes[m] -= power * terms[m] * (m == 0 ? more : half);
+    }
+    more = half;
+  }
+  const double rest = 1.0 / (c - 1.0);
+  const double factor[3] = {0.5 * Y * root * rest, 0.5 * a_ * root * rest, root};
+  for (std::size_t m = 0; m < 3; ++m) {
+    value[m] = factor[m] * sums[m] + (m < 2 ? edge_[m] * rest : 0.0);
+    dlog[m] = (value[m] > 0 ? factor[m] * slopes[m] / value[m] : 0.0) - (m < 2 ? rest : 0.0);
+  }
+  return value;
+}
+
+void ProfileRule::AddTail(const Profile& profile, const ProfileTail& tail, bool minus_ggx, double* moments,
+                          std::size_t stride) const {
+  const std::size_t K = profile.q().size();
+  const double f = f_ggx_ * std::exp(profile.Excess(u_)) / (1.0 + profile.mass_excess());
+  double dlog[3];
+  const std::array<double, 3> value = TailMoments(tail, dlog);
   for (std::size_t m = 0; m < 3; ++m) {
     double* to = moments + m * stride;
-    to[0] += f * value[m] - f_ggx * ggx[m];
-    for (std::size_t k = 0; k < K; ++k) to[k + 1] += f * value[m] * (basis[k] + (k + 1 == K ? dlog[m] : 0.0));
+    to[0] += f * value[m] - (minus_ggx ? f_ggx_ * ggx_[m] : 0.0);
+    for (std::size_t k = 0; k < K; ++k) to[k + 1] += f * value[m] * (basis_[k] + (k + 1 == K ? dlog[m] : 0.0));
   }
 }
 
@@ -218,7 +221,9 @@ ProfileGrid::ProfileGrid(std::shared_ptr<const ProfileSpline> spline) : spline_(
 
 std::vector<double> ProfileGrid::Table(const Profile& profile) const {
   std::vector<double> table(a_.size() * 3 * stride_, 0.0);
-  for (std::size_t i = 0; i < a_.size(); ++i) rules_[i].Apply(profile, true, table.data() + i * 3 * stride_, stride_);
+  const ProfileTail tail(profile.tail_exponent());
+  for (std::size_t i = 0; i < a_.size(); ++i)
+    rules_[i].Apply(profile, tail, true, table.data() + i * 3 * stride_, stride_);
   return table;
 }
 
@@ -233,7 +238,10 @@ void ProfileMasking::Difference(double a, double* derivative, double* difference
   const std::size_t stride = stride_;
   if (!(a < nodes.back())) {
     std::vector<double> moments(3 * stride, 0.0);
-    if (std::isfinite(a)) ProfileRule(profile_.spline(), a, {}).Apply(profile_, true, moments.data(), stride);
+    if (std::isfinite(a)) {
+      const ProfileTail tail(profile_.tail_exponent());
+      ProfileRule(profile_.spline(), a, {}).Apply(profile_, tail, true, moments.data(), stride);
+    }
     if (derivative != nullptr) *derivative = -moments[stride];
     std::copy_n(moments.data(), stride, difference);
     return;

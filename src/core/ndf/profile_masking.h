@@ -14,9 +14,16 @@
 #include <vector>
 
 #include "lobefit/core/ndf/profile.h"
+#include "lobefit/core/ndf/profile_moments.h"
 #include "lobefit/math/quadrature.h"
 
 namespace lobefit {
+
+// What a tail (1 + t)^-c of exponent c > 3/2 is at every a.
+struct ProfileTail {
+  explicit ProfileTail(double c);
+  double exponent, dlog_ratio, gamma_ratio;  // Gamma(c) / Gamma(c - 1/2) and the derivative of its logarithm
+};
 
 // M, T and P2 at one a >= 0 for any coefficients of a spline: Gauss-Legendre between the circles of the knots, series
 // beyond (for a beyond the last knot nothing else). Nodes and kernels do not depend on the coefficients.
@@ -27,17 +34,26 @@ class ProfileRule {
   ProfileRule(const ProfileSpline& spline, double a, const QuadratureRule& rule, int parts = 1);
 
   // moments[m * stride]: M, T, P2 (m = 0, 1, 2), followed by the derivatives by q; stride > spline.size().
-  // `minus_ggx`: the values less those of GGX.
-  void Apply(const Profile& profile, bool minus_ggx, double* moments, std::size_t stride) const;
+  // `minus_ggx`: the values less those of GGX. `tail`: the profile's.
+  void Apply(const Profile& profile, const ProfileTail& tail, bool minus_ggx, double* moments,
+             std::size_t stride) const;
 
  private:
-  void AddPanel(const ProfileSpline& spline, double from, double to, const QuadratureRule& rule);
-  void AddTail(const Profile& profile, bool minus_ggx, double* moments, std::size_t stride) const;
+  void AddPanels(const ProfileSpline& spline, const QuadratureRule& rule, int parts);
+  void AddPanel(const ProfileSpline& spline, std::size_t interval, double from, double to, const QuadratureRule& rule);
+  // Of f beyond the panels for f = 1 at their end, and the derivatives of the logarithms by the exponent.
+  std::array<double, 3> TailMoments(const ProfileTail& tail, double* dlog) const;
+  void AddTail(const Profile& profile, const ProfileTail& tail, bool minus_ggx, double* moments,
+               std::size_t stride) const;
 
   double a_, end_;  // the panels' last radius
-  std::vector<double> u_, basis_;
-  std::vector<std::array<double, 3>> weight_;  // times e^-2u
-  std::array<double, 20> j_{}, e_{}, h_{};     // the tail's series
+  ProfilePoints points_;
+  std::array<double, 20> j_{}, e_{}, h_{};  // the tail's series
+  double u_ = 0, f_ggx_ = 0;                // at end_
+  std::vector<double> basis_;               // there
+  double log_shift_ = 0;                    // a beyond end_: f at a instead
+  std::array<double, 2> edge_{};            // (1 + end_^2) times s - a atan(s / a) and atan(s / a)
+  std::array<double, 3> ggx_{};             // GGX's tail
 };
 
 // Nodes of a table for any coefficients of a spline; immutable, some milliseconds to make.
