@@ -1,5 +1,6 @@
 #include "fit_file.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -65,6 +66,8 @@ FittedFile FitFile(const FitFileOptions& options, const std::vector<std::string>
     judged.on_tried = [&progress] { progress.Advance(); };
     LadderChoice choice = ClimbLadder(recipe, judged, &fitted.measurement);
     recipe = std::move(choice.recipe);
+    if (choice.warm) fit.scouting_steps = kScoutingSteps;
+    if (choice.warm) fit.starts = std::min<std::size_t>(fit.starts, 2);
     tried = std::move(choice.tried);
   }
   fitted.material = FitRecipe(recipe, fit, &fitted.measurement);

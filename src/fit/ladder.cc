@@ -26,6 +26,7 @@ namespace {
 constexpr std::size_t kSamples = 4000, kMostFolds = 4, kStarts = 4;
 // Wavelengths that a spectrum is judged by; the shape is that of all, and descents cost the square of their number.
 constexpr std::size_t kMostChannels = 5;
+constexpr std::size_t kMostLobes = 3;
 
 struct Split {
   Samples training, test;
@@ -77,6 +78,7 @@ class Ladder {
     if (simplest_.metric == Metric::kAsinh && !simplest_.noise.IsKnown()) simplest_.metric = Metric::kCubeRoot;
     options_.starts = std::min(options_.starts, kStarts);
     options_.subsample = kSamples / 4;
+    options_.scouting_steps = kScoutingSteps;
     const Incidences incidences = GroupByIncidence(measurement);
     const std::size_t folds = std::min(kMostFolds, incidences.wi.size());
     if (folds < 2) return;
@@ -158,7 +160,8 @@ class Ladder {
     choice.recipe = rung.recipe;
     choice.recipe.metric = wanted_;
     // Several lobes have hundreds of starts, and those of a spectrum cost most; the search was made on the subsample.
-    if (rung.shapes.size() > 1 || channels_.size() == kMostChannels) StartAt(rung.shapes, &choice.recipe);
+    choice.warm = rung.shapes.size() > 1 || channels_.size() == kMostChannels;
+    if (choice.warm) StartAt(rung.shapes, &choice.recipe);
     choice.recipe.reason = fmt::format(
         "of {} models the simplest whose error on held-out incident directions ({:.3g}) is within one standard error "
         "of the least ({:.3g}, {}); one lobe of the simplest kind: {:.3g}",
@@ -244,10 +247,10 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   Recipe weighted = simplest;
   weighted.weighting = EffectiveWeighting(simplest.weighting, measurement->samples);
   Ladder ladder(weighted, options, *measurement);
-  if (!ladder.CanJudge()) return {simplest, {}};
+  if (!ladder.CanJudge()) return {simplest, false, {}};
   Model model;
   model.lobes = {{Ndf::kGgx}};
-  if (ladder.Try(model, "ggx") == nullptr) return {simplest, {}};
+  if (ladder.Try(model, "ggx") == nullptr) return {simplest, false, {}};
   const auto with_ndf = [&](Ndf ndf) {
     Model changed = ladder.Best().recipe.model;
     changed.lobes[0].ndf = ndf;
@@ -278,19 +281,33 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   const std::string two_name = std::string(NameOf(NdfChoices(), shape)) + "+ggx";
   const Rung* const with_two = ladder.Try(two, two_name);
   // A free curve of the angle takes up what a tail lacks and the other way round: each with it.
-  for (auto [base, name, rung] : {std::tuple(free, profile_name, with_profile), std::tuple(two, two_name, with_two)}) {
-    for (Lobe& lobe : base.lobes) lobe.fresnel = Fresnel::kCurve;
-    if (rung != nullptr) ladder.Try(base, name + "+curve", rung);
-  }
+  const auto with_curve = [&](std::vector<Lobe> lobes, const Rung* base) {
+    if (base == nullptr) return;
+    Model curved;
+    std::string name;
+    for (Lobe& lobe : lobes) {
+      lobe.fresnel = Fresnel::kCurve;
+      name += NameOf(NdfChoices(), lobe.ndf) + std::string("+");
+    }
+    curved.lobes = std::move(lobes);
+    ladder.Try(curved, name + "curve", base);
+  };
+  with_curve({{profile}}, with_profile);
+  with_curve({{shape}, {Ndf::kGgx}}, with_two);
+  with_curve({{student}, {student}}, with_two);
+  // Two profiles in each of a spectrum's channels cost minutes, and predict little better.
+  const bool spectrum = measurement->channels.names.size() > kMostChannels;
+  if (!spectrum) with_curve({{profile}, {profile}}, with_two);
   Model interfaced = ladder.Best().recipe.model;
   interfaced.diffuse = Diffuse::kInterfaced;
   ladder.Try(interfaced, ladder.BestName() + "+interfaced", &ladder.Best());
-  Model retro = ladder.Best().recipe.model;
-  if (retro.lobes.size() < 3) {
-    Lobe back = {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kNone};
-    back.direction = LobeDirection::kRetro;
-    retro.lobes.push_back(back);
-    ladder.Try(retro, ladder.BestName() + "+retro", &ladder.Best());
+  for (const bool retro : {true, false}) {
+    Model more = ladder.Best().recipe.model;
+    if (more.lobes.size() == kMostLobes || (!retro && (more.lobes.size() == 1 || spectrum))) continue;
+    Lobe lobe = {Ndf::kGgx, Masking::kSmithSeparable, retro ? Fresnel::kNone : more.lobes[0].fresnel};
+    if (retro) lobe.direction = LobeDirection::kRetro;
+    more.lobes.push_back(lobe);
+    ladder.Try(more, ladder.BestName() + (retro ? "+retro" : "+ggx"), &ladder.Best());
   }
   return ladder.Choose();
 }

@@ -3,10 +3,11 @@
 //
 // Folds are those of compare.h: readings of one incident direction are not split. The steps: shape (anisotropic,
 // tilted); in the simplest shape that predicts as well as the best, its tail (Student's, a free profile) or a second
-// lobe; the profile and the two lobes with a free Fresnel curve; for the best so far a diffuse part below an interface,
-// then a lobe about the back direction. Chosen is the one with the fewest parameters of all that were tried whose
-// held-out mean square exceeds the least one by no more than one standard error of the difference over folds. The work
-// is done on a stratified subsample in a few channels, each model's folds from its descent on the whole of it.
+// lobe; a profile, two lobes, two of Student's and two profiles with a free Fresnel curve; for the best so far a
+// diffuse part below an interface, then a lobe about the back direction, then a third lobe. Chosen is the one with the
+// fewest parameters of all that were tried whose held-out mean square exceeds the least one by no more than one
+// standard error of the difference over folds. The work is done on a stratified subsample in a few channels, each
+// model's folds from its descent on the whole of it.
 #pragma once
 
 #include "lobefit/base/parallel.h"
@@ -16,11 +17,14 @@ namespace lobefit {
 
 struct LadderChoice {
   Recipe recipe;                  // with its reason
+  bool warm = false;              // the recipe's starts are those of the search: few descents find the minimum again
   std::vector<TriedModel> tried;  // in the order of trial; empty where there were too few incidences to judge by
 };
 
 // At most so many models are judged (FitOptions::on_tried).
-inline constexpr std::size_t kMostTried = 10;
+inline constexpr std::size_t kMostTried = 13;
+// After so many steps of descents from many starts the best of them are mostly known (FitOptions::scouting_steps).
+inline constexpr int kScoutingSteps = 15;
 
 // `simplest`: the recipe that the measurement's traits allow (AutomaticRecipe), which gives metric, weighting and
 // limits, and is chosen where nothing can be held out. Sets samples aside that the recipe cannot take, as Fit does.

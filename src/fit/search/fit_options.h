@@ -15,6 +15,9 @@ struct FitOptions {
   // Samples of the subsample on which starts are ranked and descended; fits with at most three times as many use all
   // samples throughout. Larger ones go through a second level of 40 000 samples.
   std::size_t subsample = 2000;
+  // Descents on the subsample end after so many steps, and only those that are best by then go on; 0: each goes on to
+  // its minimum.
+  int scouting_steps = 0;
   // Called after each model that the automatic choice has judged (ladder.h).
   std::function<void()> on_tried;
 };

@@ -8,6 +8,7 @@
 namespace lobefit {
 namespace {
 
+constexpr std::size_t kScoutsKept = 3;
 // Samples of the second level. Its minima lie so close to those of a full table that few steps are left to do there.
 constexpr std::size_t kMiddle = 40000;
 // Minima that go on to the next level: at most so many, and no worse than the best by this factor in cost.
@@ -52,10 +53,19 @@ std::vector<DistinctMinimum> Descend(const Problem& problem, const Layout& layou
   const std::size_t descents = options.starts * (layout.recipe().model.lobes.size() > 1 ? kDescentsOfSeveral : 1);
   if (starts.size() > descents) starts.resize(descents);
   std::vector<DistinctMinimum> minima(starts.size());
-  pool->Run(starts.size(), [&](std::size_t k) {
+  const auto descend = [&](std::size_t k, const std::vector<double>& u, const SolveOptions& solve) {
     ThreadPool alone(1);
-    minima[k] = {Solve(problem, layout, starts[k].u, {}, &alone), 1, problem.size()};
-  });
+    minima[k] = {Solve(problem, layout, u, solve, &alone), 1, problem.size()};
+  };
+  SolveOptions scouting;
+  scouting.max_iterations = options.scouting_steps;
+  const bool scout = options.scouting_steps > 0 && starts.size() > kScoutsKept;
+  pool->Run(starts.size(), [&](std::size_t k) { descend(k, starts[k].u, scout ? scouting : SolveOptions()); });
+  if (scout) {
+    JoinEqual(problem.size() * problem.channels(), &minima);
+    if (minima.size() > kScoutsKept) minima.resize(kScoutsKept);
+    pool->Run(minima.size(), [&](std::size_t k) { descend(k, minima[k].solution.u, {}); });
+  }
   JoinEqual(problem.size() * problem.channels(), &minima);
   return minima;
 }

@@ -1,0 +1,152 @@
+// The automatic choice on measurements of known models.
+#include "lobefit/fit/ladder.h"
+
+#include <algorithm>
+
+#include "tests/support/synthetic.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lobefit {
+namespace {
+
+constexpr double kNoise = 0.02;
+
+GoniometerLayout SixPolarAngles() {
+  GoniometerLayout layout;
+  for (const double degrees : {5., 20., 35., 50., 60., 70.}) layout.polar_angles.push_back(DegreesToRadians(degrees));
+  for (const double degrees : {0., 70.}) layout.azimuths.push_back(DegreesToRadians(degrees));
+  layout.detector_step = DegreesToRadians(15);
+  return layout;
+}
+
+SyntheticCase Gray(Ndf ndf, double alpha_x, double alpha_y) {
+  return OneLobe(ndf, alpha_x, alpha_y, 0, 0, 0, {0.6}, {0.1});
+}
+
+LadderChoice ChoiceFor(const SyntheticCase& truth, std::uint64_t seed, int threads = 1) {
+  Measurement measurement = Synthetic(truth, SixPolarAngles(), kNoise, seed);
+  FitOptions options;
+  options.threads = threads;
+  return ClimbLadder(AutomaticRecipe(TraitsOf(measurement)), options, &measurement);
+}
+
+const TriedModel& Chosen(const LadderChoice& choice) {
+  return *std::find_if(choice.tried.begin(), choice.tried.end(), [](const TriedModel& model) { return model.chosen; });
+}
+
+// Nine of ten are asked for: 7 or fewer of 10 then have a chance of 7 %.
+TEST(Ladder, OneGgxLobeStaysOne) {
+  int simplest = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    simplest += ChoiceFor(Gray(Ndf::kGgx, 0.2, 0.2), seed).recipe.name == "ggx";
+  EXPECT_GE(simplest, 8);
+}
+
+TEST(Ladder, WhatTheTruthNeedsIsFound) {
+  SyntheticCase student = Gray(Ndf::kStudent, 0.2, 0.2);
+  student.values.insert(student.values.begin() + 5, {{1.6}});
+  SyntheticCase two = Gray(Ndf::kGgx, 0.1, 0.1);
+  two.model.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kNone});
+  two.values.insert(two.values.begin() + 6, {{0.5}, {0.5}, {0}, {0}, {0}, {0.3}});
+  SyntheticCase curve = Gray(Ndf::kGgx, 0.2, 0.2);
+  curve.model.lobes[0].fresnel = Fresnel::kCurve;
+  curve.values = {{0.2}, {0.2}, {0}, {0}, {0}, {0.9}, {0.1}, {0.5}, {0.2}, {0.6}, {0.3}, {0.1}};
+  SyntheticCase retro = Gray(Ndf::kGgx, 0.3, 0.3);
+  retro.model.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kNone});
+  retro.model.lobes[1].direction = LobeDirection::kRetro;
+  retro.values.insert(retro.values.begin() + 6, {{0.1}, {0.1}, {0}, {0}, {0}, {0.3}});
+  const struct {
+    SyntheticCase truth;
+    const char* part;  // of the name of the model
+  } cases[] = {{Gray(Ndf::kGgxAnisotropic, 0.3, 0.1), "anisotropic"},
+               {student, "student"},
+               {two, "+ggx"},
+               {curve, "curve"},
+               {retro, "retro"}};
+  for (const auto& [truth, part] : cases) {
+    const LadderChoice choice = ChoiceFor(truth, 7);
+    const TriedModel& chosen = Chosen(choice);
+    // The truth's own rung, or another that predicts to the noise: the cube root turns 2 % into 0.7 % of itself.
+    const TriedModel& best = *std::min_element(choice.tried.begin(), choice.tried.end(),
+                                               [](const auto& a, const auto& b) { return a.held_out < b.held_out; });
+    EXPECT_LT(chosen.ratio, 0.9) << part << ": " << chosen.name;
+    EXPECT_LT(chosen.held_out, 1.1 * best.held_out) << part << ": " << chosen.name;
+    EXPECT_THAT(chosen.name, testing::HasSubstr(part));
+  }
+}
+
+TEST(Ladder, NeverWorseThanOneLobeAndTheFirstOfTheTable) {
+  for (const double alpha_y : {0.05, 0.2}) {
+    const LadderChoice choice = ChoiceFor(Gray(Ndf::kGgxAnisotropic, 0.2, alpha_y), 3);
+    ASSERT_FALSE(choice.tried.empty());
+    EXPECT_EQ(choice.tried[0].name, "ggx");
+    EXPECT_EQ(choice.tried[0].ratio, 1);
+    EXPECT_LE(Chosen(choice).ratio, 1);
+    EXPECT_LE(choice.tried.size(), kMostTried);
+  }
+}
+
+TEST(Ladder, TheSameBitsWithOneAndThreeThreads) {
+  const SyntheticCase truth = Gray(Ndf::kGgxAnisotropic, 0.3, 0.1);
+  const LadderChoice one = ChoiceFor(truth, 5, 1), three = ChoiceFor(truth, 5, 3);
+  ASSERT_EQ(one.tried.size(), three.tried.size());
+  for (std::size_t k = 0; k < one.tried.size(); ++k) EXPECT_EQ(one.tried[k].held_out, three.tried[k].held_out) << k;
+  EXPECT_EQ(one.recipe.name, three.recipe.name);
+}
+
+TEST(Ladder, EachTriedModelIsTold) {
+  Measurement measurement = Synthetic(Gray(Ndf::kGgx, 0.2, 0.2), SixPolarAngles(), kNoise, 1);
+  FitOptions options;
+  std::size_t told = 0;
+  options.on_tried = [&told] { ++told; };
+  const LadderChoice choice = ClimbLadder(AutomaticRecipe(TraitsOf(measurement)), options, &measurement);
+  EXPECT_GE(told, choice.tried.size());
+}
+
+// Where asinh is asked for without a known noise, models are judged under the cube root and the metric is kept.
+TEST(Ladder, AsinhIsKept) {
+  Measurement measurement = Synthetic(Gray(Ndf::kGgxAnisotropic, 0.3, 0.1), SixPolarAngles(), kNoise, 1);
+  Recipe recipe = AutomaticRecipe(TraitsOf(measurement));
+  recipe.metric = Metric::kAsinh;
+  const LadderChoice choice = ClimbLadder(recipe, {}, &measurement);
+  EXPECT_FALSE(choice.tried.empty());
+  EXPECT_EQ(choice.recipe.metric, Metric::kAsinh);
+}
+
+TEST(Ladder, OneIncidenceIsNothingToJudgeBy) {
+  GoniometerLayout layout = SixPolarAngles();
+  layout.polar_angles = {0.5};
+  layout.azimuths = {0};
+  Measurement measurement = Synthetic(Gray(Ndf::kGgx, 0.2, 0.2), layout, kNoise, 1);
+  const Recipe simplest = AutomaticRecipe(TraitsOf(measurement));
+  const LadderChoice choice = ClimbLadder(simplest, {}, &measurement);
+  EXPECT_TRUE(choice.tried.empty());
+  EXPECT_EQ(choice.recipe.name, simplest.name);
+}
+
+Material Judged(VerdictKind kind, std::vector<TriedModel> tried) {
+  Material material;
+  material.verdict = Verdict{kind, 0.2, 0.01, 0.9, ""};
+  material.tried = std::move(tried);
+  return material;
+}
+
+TEST(Advice, NamesAModelThatDidBetterOrThePartThatDoesNotFit) {
+  const std::vector<TriedModel> tried = {{"ggx", 3, 0.10, 1.0, true}, {"profile", 7, 0.05, 0.5, false}};
+  Material material = Judged(VerdictKind::kRough, tried);
+  AddAdvice(&material);
+  EXPECT_EQ(material.verdict->advice, "profile predicted 50 % better, with 7 parameters");
+  material.misfit = {true, true, 1e-9, 1, "theta_d below 10 degrees"};
+  AddAdvice(&material);
+  EXPECT_EQ(material.verdict->advice, "it fits worst theta_d below 10 degrees");
+  Material close = Judged(VerdictKind::kClose, tried);
+  AddAdvice(&close);
+  EXPECT_EQ(close.verdict->advice, "");
+  Material alone = Judged(VerdictKind::kDoesNotDescribe, {});
+  AddAdvice(&alone);
+  EXPECT_EQ(alone.verdict->advice, "leave --recipe out: richer models are then tried");
+}
+
+}  // namespace
+}  // namespace lobefit
