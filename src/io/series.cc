@@ -4,6 +4,7 @@
 #include <set>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/read.h"
 #include "lobefit/measurement/pool.h"
@@ -52,7 +53,9 @@ Measurement ReadSeries(const std::vector<std::string>& specs, const ReadOptions&
   }
   std::set<std::string> seen;
   for (const FileSpec& file : files) {
-    if (!seen.insert(std::filesystem::weakly_canonical(file.path).string()).second)
+    // A pipe has no name to resolve: that of `<(...)` is a link to nothing.
+    const std::filesystem::path place = IsStream(file.path) ? file.path : std::filesystem::weakly_canonical(file.path);
+    if (!seen.insert(place.string()).second)
       throw UsageError(file.path.string() + ": is named twice; name each file of a series once");
   }
   if (files.size() == 1) return ReadMeasurement(files[0].path, WithKeys(options, files[0].keys));

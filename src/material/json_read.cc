@@ -1,4 +1,5 @@
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include <fmt/format.h>
@@ -223,8 +224,8 @@ void ReadRest(const Reader& reader, Material* material) {
     for (const Json& entry : reader.Member(quality, "tried")) {
       material->tried.push_back({reader.Get<std::string>(entry, "model"),
                                  reader.Get<std::size_t>(entry, "free_parameters"),
-                                 reader.Get<double>(entry, "held_out_error"), reader.Get<double>(entry, "ratio"),
-                                 reader.Get<bool>(entry, "chosen")});
+                                 reader.GetNumbers(entry, "held_out_error", 1)[0],
+                                 reader.GetNumbers(entry, "ratio", 1)[0], reader.Get<bool>(entry, "chosen")});
     }
   }
   if (quality.contains("misfit")) {
@@ -312,9 +313,13 @@ Material ReadModelMaterial(const std::filesystem::path& path) {
 }
 
 bool LooksLikeMaterial(const std::filesystem::path& path) {
-  const FileBytes file(path);
-  const std::string_view head = file.bytes().substr(0, 256);
-  return !head.empty() && head[0] == '{' && head.find("\"lobefit material\"") != std::string_view::npos;
+  // What a stream holds can be read once only, and is a measurement's.
+  if (IsStream(path)) return false;
+  std::ifstream file(path, std::ios::binary);
+  std::string head(256, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head.starts_with('{') && head.find("\"lobefit material\"") != std::string::npos;
 }
 
 }  // namespace lobefit
