@@ -38,6 +38,7 @@ std::string SeriesName(const std::vector<std::string>& files) {
   for (std::size_t f = 0; f < files.size(); ++f) {
     std::filesystem::path path = ParseFileSpec(files[f]).path;
     if (!path.has_filename()) path = path.parent_path();  // a folder named with a slash at its end
+    if (path == "-") path = "stdin";
     const std::string stem = std::filesystem::is_directory(path) ? path.filename().string() : path.stem().string();
     if (f == 0) name = stem;
     const auto differ = std::mismatch(name.begin(), name.end(), stem.begin(), stem.end());

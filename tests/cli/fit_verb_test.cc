@@ -78,5 +78,23 @@ TEST_F(FitVerb, DrawsTheReportAgain) {
   EXPECT_THAT(Files(), testing::Contains("satin_plastic.report.png"));
 }
 
+// Standard input, a pipe with a name that leads nowhere, and the file itself give the same document but for its name.
+TEST_F(FitVerb, PipesAreReadLikeFiles) {
+  const std::string options =
+      " --recipe ggx --no-report --json | sed "
+      "'/\"file\"\\|_s\"\\|\"command\"\\|\"fit\"\\|\"read\"\\|\"report\"\\|\"solve\"/d'";
+  const std::string file = Shell("lobefit fit $SOURCE/samples/brushed_metal.csv" + options).out;
+  EXPECT_EQ(Shell("cat $SOURCE/samples/brushed_metal.csv | lobefit fit -" + options).out, file);
+  EXPECT_EQ(
+      Shell("bash -c \"lobefit fit <(cat $SOURCE/samples/brushed_metal.csv) --recipe ggx --no-report --json\" | sed " +
+            options.substr(options.find("sed ") + 4))
+          .out,
+      file);
+  EXPECT_GT(file.size(), 1000U);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "stdin.material.json"));
+  const ProgramResult twice = Shell("lobefit fit - - < $SOURCE/samples/brushed_metal.csv");
+  EXPECT_EQ(twice.exit_code, 2);
+}
+
 }  // namespace
 }  // namespace lobefit
