@@ -66,6 +66,100 @@ SyntheticCase GgxImplicit() {
   return synthetic;
 }
 
+// Profiles, Student's, tinted and free Fresnel terms, diffuse parts of two directions, lobes about the back direction.
+SyntheticCase Made(const std::vector<Lobe>& lobes, Diffuse diffuse, const ParameterValues& values) {
+  SyntheticCase synthetic;
+  synthetic.model.lobes = lobes;
+  synthetic.model.diffuse = diffuse;
+  synthetic.values = values;
+  return synthetic;
+}
+const std::vector<double> kCurve0 = {0.9, 1, 0.8}, kCurve1 = {0.8, 0.7, 0.5}, kCurve2 = {0.3, 0.2, 0.1},
+                          kCurve3 = {0.1, 0.3, 0.2}, kCurve4 = {0.6, 0.1, 0.05}, kCurve5 = {0.4, 0.2, 0.1};
+SyntheticCase TiltedProfile() {
+  return Made({{Ndf::kProfileEllipsoid, Masking::kSmithSeparable, Fresnel::kCurve}}, Diffuse::kInterfaced,
+              {{0.3},
+               {0.12},
+               {0.05},
+               {-0.08},
+               {0.4},
+               {-0.6},
+               {0.8},
+               {0.3},
+               {-0.9},
+               {-0.5},
+               {-0.4},
+               kCurve0,
+               kCurve1,
+               kCurve2,
+               kCurve3,
+               kCurve4,
+               kCurve5,
+               {1.5, 1.5, 1.5},
+               {0.3, 0.2, 0.1}});
+}
+// As good as Beckmann's: exponents that rise steeply.
+SyntheticCase SteepProfile() {
+  return Made({{Ndf::kProfile, Masking::kSmithUnclamped, Fresnel::kSchlickF82}}, Diffuse::kOrenNayar,
+              {{0.4},
+               {0.4},
+               {0},
+               {0},
+               {0},
+               {-0.6},
+               {2},
+               {9},
+               {30},
+               {26},
+               {30},
+               {0.9, 0.6, 0.3},
+               {0.4, 0.7, 1.1},
+               {0.8, 0.8, 0.8},
+               {0.6, 0.4, 0.9}});
+}
+SyntheticCase StudentOverGlass() {
+  SyntheticCase synthetic =
+      Made({{Ndf::kStudentEllipsoid, Masking::kSmithHeight, Fresnel::kDielectric}}, Diffuse::kInterfaced,
+           {{0.4}, {0.1}, {0.02}, {0.06}, {-0.9}, {1.6}, {1.5, 1.33, 2}, {1.02, 1.5, 2.8}, {0.6, 0.4, 0.9}});
+  return synthetic;
+}
+SyntheticCase LightStudent() {
+  return Made({{Ndf::kStudentAnisotropic, Masking::kSmithHeightDirection, Fresnel::kSchlick}}, Diffuse::kNone,
+              {{0.2}, {0.08}, {0}, {0}, {1.1}, {12}, {0.9, 0.5, 0.1}});
+}
+SyntheticCase StudentSchlickSmith() {
+  SyntheticCase synthetic = LightStudent();
+  synthetic.model.lobes[0].masking = Masking::kSchlickSmith;
+  return synthetic;
+}
+SyntheticCase NarrowProfile() {
+  SyntheticCase synthetic = TiltedProfile();
+  synthetic.values[0] = {0.02};
+  synthetic.values[1] = {0.008};
+  synthetic.model.lobes[0].grid = GridWithKnots({0, 0.25, 0.5, 0.75, 1, 1.5, 2, 4});
+  synthetic.values.insert(synthetic.values.begin() + 11, {0.3});
+  return synthetic;
+}
+SyntheticCase Retro() {
+  return Made({{Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kSchlick},
+               {Ndf::kProfileAnisotropic, Masking::kSmithSeparable, Fresnel::kNone, "", LobeDirection::kRetro},
+               {Ndf::kGgx, Masking::kSmithHeight, Fresnel::kSchlickF82, "", LobeDirection::kRetro}},
+              Diffuse::kLambert, {{0.3},         {0.3},          {0},   {0},    {0},    {0.05, 0.05, 0.05},
+                                  {0.2},         {0.1},          {0},   {0},    {0.5},  {0.4},
+                                  {-0.2},        {-0.2},         {0.1}, {-0.1}, {-0.3}, {0.2, 0.3, 0.1},
+                                  {0.1},         {0.1},          {0},   {0},    {0},    {0.3, 0.2, 0.1},
+                                  {0.5, 0.9, 1}, {0.1, 0.2, 0.3}});
+}
+SyntheticCase SpectralProfile() {
+  SyntheticCase synthetic = TiltedProfile();
+  synthetic.channels = {"450nm", "500nm", "550nm", "600nm"};
+  const std::vector<Parameter> parameters = Parameters(synthetic.model);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].per_channel) synthetic.values[p].push_back(0.9 * synthetic.values[p][0] + 0.1);
+  }
+  return synthetic;
+}
+
 // What a text is asked in each pixel.
 constexpr const char* kCall = "vec3 pixel(vec4 a, vec4 b) { return f_of(a.xyz, b.xyz); }\n";
 
@@ -195,15 +289,18 @@ TEST_P(Shaders, GiveTheFitsValuesInABrowser) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Materials, Shaders,
-                         testing::Values(ShaderCase{"tilted", test::Tilted}, ShaderCase{"two_lobes", test::TwoLobes},
-                                         ShaderCase{"spectral", Spectral}, ShaderCase{"narrow", Narrow},
-                                         ShaderCase{"beckmann_metal", BeckmannMetal},
-                                         ShaderCase{"beckmann_glass", BeckmannGlass},
-                                         ShaderCase{"beckmann_kelemen", BeckmannKelemen},
-                                         ShaderCase{"schlick_smith", GgxSchlickSmith},
-                                         ShaderCase{"implicit", GgxImplicit}),
-                         [](const auto& parameter) { return std::string(parameter.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Materials, Shaders,
+    testing::Values(ShaderCase{"tilted", test::Tilted}, ShaderCase{"two_lobes", test::TwoLobes},
+                    ShaderCase{"spectral", Spectral}, ShaderCase{"narrow", Narrow},
+                    ShaderCase{"beckmann_metal", BeckmannMetal}, ShaderCase{"beckmann_glass", BeckmannGlass},
+                    ShaderCase{"beckmann_kelemen", BeckmannKelemen}, ShaderCase{"schlick_smith", GgxSchlickSmith},
+                    ShaderCase{"implicit", GgxImplicit}, ShaderCase{"tilted_profile", TiltedProfile},
+                    ShaderCase{"steep_profile", SteepProfile}, ShaderCase{"narrow_profile", NarrowProfile},
+                    ShaderCase{"student_over_glass", StudentOverGlass}, ShaderCase{"light_student", LightStudent},
+                    ShaderCase{"student_schlick_smith", StudentSchlickSmith}, ShaderCase{"retro", Retro},
+                    ShaderCase{"spectral_profile", SpectralProfile}),
+    [](const auto& parameter) { return std::string(parameter.param.name); });
 
 // Two materials in one shader, and the first by the short name.
 TEST(GlslText, TwoFilesMakeOneShader) {

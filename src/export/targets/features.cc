@@ -124,19 +124,13 @@ std::string RefuseNoLobe(const FittedBrdf& fit) {
 std::string RefuseUnknownTerms(const FittedBrdf& fit) {
   for (const FittedLobe& lobe : fit.lobes()) {
     const NdfFamily family = FamilyOf(lobe.choices.ndf);
-    if (lobe.choices.direction == LobeDirection::kRetro) return "its shader text has no lobe about the back direction";
-    if (lobe.choices.fresnel == Fresnel::kSchlickF82 || lobe.choices.fresnel == Fresnel::kCurve) {
-      return fmt::format("its shader text does not know the Fresnel term '{}'",
-                         NameOf(FresnelChoices(), lobe.choices.fresnel));
-    }
-    if (family == NdfFamily::kGgx || family == NdfFamily::kBeckmann) continue;
-    return fmt::format("its shader text knows GGX and Beckmann distributions, not '{}'",
+    if (family != NdfFamily::kKagiwadaKalaba && family != NdfFamily::kSphericalGaussian) continue;
+    return fmt::format("its shader text knows distributions of slopes, not '{}'",
                        NameOf(NdfChoices(), lobe.choices.ndf));
   }
   const Diffuse diffuse = fit.material().model.diffuse;
-  if (diffuse != Diffuse::kLambert && diffuse != Diffuse::kNone) {
-    return fmt::format("its shader text knows Lambertian diffuse parts only, not '{}'",
-                       NameOf(DiffuseChoices(), diffuse));
+  if (diffuse == Diffuse::kMicrofacet) {
+    return fmt::format("its shader text has no diffuse part '{}'", NameOf(DiffuseChoices(), diffuse));
   }
   return "";
 }

@@ -17,13 +17,20 @@ extern const char* const kShaderContract;
 // The half vector `h` and the cosine `cos_d`, of wi and wo.
 extern const char* const kShaderHalfText;
 
+// The functions that belong to the radial lobes of this fit; their names begin with `prefix`.
+std::string ShaderFunctions(const FittedBrdf& fit, const std::string& prefix);
 // The body of a function of wi and wo after that: R, G, B or grey in `f_r`, or the values of the array `f_r`.
-std::string ShaderBody(const FittedBrdf& fit);
-// The Fresnel factor as an expression of `cos_d`, with the parameters as text.
-std::string ShaderFresnel(Fresnel fresnel, const std::vector<std::string>& parameters);
-// Numbers of a lobe's distribution and masking as kShaderLobeText takes them.
-int ShaderFamily(const FittedLobe& lobe);
-int ShaderMasking(const FittedLobe& lobe);
+std::string ShaderBody(const FittedBrdf& fit, const std::string& prefix);
+
+// The expressions that it is made of, with the names of the parameters as text. The lobe without its Fresnel term, by
+// the five `slopes` of lobefit_lobe:
+std::string ShaderLobe(const FittedBrdf& fit, std::size_t lobe, const std::string& prefix, const std::string& slopes);
+// Its Fresnel factor, of `cos_d` or a retro lobe's `cos_back`:
+std::string ShaderFresnel(const Lobe& lobe, const std::vector<std::string>& parameters);
+// The diffuse part; no parameter where there is none.
+std::string ShaderDiffuse(Diffuse diffuse, const std::vector<std::string>& parameters);
+// Statements for the mirrored light direction where a lobe needs it.
+std::string ShaderBackText(const FittedBrdf& fit);
 
 std::string Replaced(std::string text, const std::string& from, const std::string& to);
 

@@ -50,7 +50,7 @@ float facets(vec3 wi, vec3 wo, vec3 h) {
              max(zi - radius * gi, 0.0) * inversesqrt(1.0 + dot(slope, slope));
     }
   }
-  return sum / (PI * lobefit_area(wi, wo, h, s.x, s.y, s.z, s.w, c, family, int(kind[0].z)));
+  return sum / (PI * lobefit_area(wi, wo, h, s.x, s.y, s.z, s.w, c, family, int(kind[0].z), 1.0, 1.0));
 }
 // What all channels share: the diffuse part of albedo 1 and each lobe without its Fresnel term.
 float cosD;
@@ -62,7 +62,7 @@ void prepare(vec3 wi, vec3 wo) {
   for (int k = 0; k < 8; ++k) {
     if (k >= lobes) break;
     vec4 s = shape[k];
-    lobePart[k] = lobefit_lobe(wi, wo, h, s.x, s.y, s.z, s.w, kind[k].x, int(kind[k].y), int(kind[k].z));
+    lobePart[k] = lobefit_lobe(wi, wo, h, s.x, s.y, s.z, s.w, kind[k].x, int(kind[k].y), int(kind[k].z), 0.0, 1.0, 1.0);
   }
   diffusePart = diffuseKind == 0 ? 0.0 : diffuseKind == 1 ? 1.0 / PI : facets(wi, wo, h);
 }

@@ -17,14 +17,15 @@ WrittenFiles WriteGlsl(const FittedBrdf& fit, const WriteContext& context) {
 }  // namespace
 
 std::string GlslText(const FittedBrdf& fit, const std::string& name, const std::vector<std::string>& header) {
-  const std::string own = GlslPrefix(name) + "f_r";
+  const std::string prefix = GlslPrefix(name), own = prefix + "f_r";
   std::string text =
       CommentLines(header, "//") +
-      fmt::format("#ifndef LOBEFIT_LOBE\n#define LOBEFIT_LOBE{}#endif\n// {}\n", kShaderLobeText, kShaderContract);
+      fmt::format("#ifndef LOBEFIT_LOBE\n#define LOBEFIT_LOBE{}#endif\n// {}\n", kShaderLobeText, kShaderContract) +
+      ShaderFunctions(fit, prefix);
   if (fit.IsRgbOrGrey()) {
     text += fmt::format("vec3 {}(vec3 wi, vec3 wo) {{\n  if (wi[2] <= 0.0 || wo[2] <= 0.0) {{ return vec3(0.0); }}\n",
                         own) +
-            kShaderHalfText + ShaderBody(fit) + "  return f_r;\n}\n";
+            kShaderHalfText + ShaderBody(fit, prefix) + "  return f_r;\n}\n";
   } else {
     const std::size_t channels = fit.material().channels.size();
     text += "// Channels:";
@@ -33,7 +34,7 @@ std::string GlslText(const FittedBrdf& fit, const std::string& name, const std::
                 "\nvoid {0}(vec3 wi, vec3 wo, out float f_r[{1}]) {{\n  for (int k = 0; k < {1}; ++k) {{ f_r[k] = "
                 "0.0; }}\n  if (wi[2] <= 0.0 || wo[2] <= 0.0) {{ return; }}\n",
                 own, channels) +
-            kShaderHalfText + ShaderBody(fit) + "}\n";
+            kShaderHalfText + ShaderBody(fit, prefix) + "}\n";
   }
   return text + GlslShortName("f_r", own);
 }

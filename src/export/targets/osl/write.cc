@@ -14,12 +14,13 @@ constexpr const char* kNoClosure =
     "material; testshade and shaders that ask for f_r can";
 
 std::string FunctionText(const FittedBrdf& fit) {
-  std::string text = kShaderLobeText + fmt::format("// {}\n", kShaderContract);
+  const std::string prefix = "lobefit_";
+  std::string text = kShaderLobeText + fmt::format("// {}\n", kShaderContract) + ShaderFunctions(fit, prefix);
   if (fit.IsRgbOrGrey()) {
     return text +
            "vec3 lobefit_f_r(vec3 wi, vec3 wo) {\n  if (wi[2] <= 0.0 || wo[2] <= 0.0) { return vec3(0.0, 0.0, 0.0); "
            "}\n" +
-           kShaderHalfText + ShaderBody(fit) + "  return f_r;\n}\n";
+           kShaderHalfText + ShaderBody(fit, prefix) + "  return f_r;\n}\n";
   }
   const std::size_t channels = fit.material().channels.size();
   text += "// Channels:";
@@ -29,7 +30,7 @@ std::string FunctionText(const FittedBrdf& fit) {
              "\nvoid lobefit_f_r(vec3 wi, vec3 wo, output float f_r[{0}]) {{\n  for (int k = 0; k < {0}; ++k) {{ "
              "f_r[k] = 0.0; }}\n  if (wi[2] <= 0.0 || wo[2] <= 0.0) {{ return; }}\n",
              channels) +
-         kShaderHalfText + ShaderBody(fit) + "}\n";
+         kShaderHalfText + ShaderBody(fit, prefix) + "}\n";
 }
 
 WrittenFiles WriteOsl(const FittedBrdf& fit, const WriteContext& context) {
