@@ -155,15 +155,16 @@ SelTable ReadSel(const Reader& reader, std::size_t channels) {
 // coordinates go beyond them.
 void CheckRange(const Reader& reader, const Parameter& parameter, double value) {
   constexpr double kWidest = 10;  // of the slope coordinates
-  const bool is_angle = parameter.unit == "deg", is_shape = parameter.group == ParameterGroup::kShape;
+  const bool is_shape = parameter.group == ParameterGroup::kShape;
+  const bool is_width = is_shape && parameter.name.find("alpha") != std::string::npos;
   if (!std::isfinite(value)) reader.Fail(fmt::format("parameter '{}' has no finite value", parameter.json_name));
   const double factor = InsideFactor(parameter);
-  const double slack = is_angle ? 1e-9 : 0;  // rounding of degrees
-  if (is_shape && !is_angle && !(value > 0 && value <= std::max(kWidest, parameter.high))) {
+  const double slack = parameter.unit == "deg" ? 1e-9 : 0;  // rounding of degrees
+  if (is_width && !(value > 0 && value <= std::max(kWidest, parameter.high))) {
     reader.Fail(fmt::format("parameter '{}' is {:g}; it must be above 0 and at most {:g}", parameter.json_name, value,
                             std::max(kWidest, parameter.high)));
   }
-  if (is_angle && !(value >= parameter.low - slack && value <= parameter.high + slack)) {
+  if (is_shape && !is_width && !(value >= parameter.low - slack && value <= parameter.high + slack)) {
     reader.Fail(fmt::format("parameter '{}' is {:g}; it must lie in [{:g}, {:g}]", parameter.json_name, value / factor,
                             parameter.low / factor, parameter.high / factor));
   }

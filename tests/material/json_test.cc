@@ -53,6 +53,26 @@ TEST(MaterialJson, NotANumberBecomesNull) {
   EXPECT_TRUE(std::isnan(MaterialFromJson(text, "m.json").parameters[0].standard_error[0]));
 }
 
+// The numbers of a profile may be negative, down to their bounds.
+TEST(MaterialJson, ReadsAProfileBack) {
+  SyntheticCase profile = OneLobe(Ndf::kProfile, 0.3, 0.3, 0, 0, 0);
+  profile.values.insert(profile.values.begin() + 5, {{-1.5}, {0.3}, {-2}, {0.1}, {-0.4}, {-0.45}});
+  Material material = FittedMaterial();
+  material.model = profile.model;
+  material.parameters.clear();
+  for (const std::vector<double>& values : profile.values) {
+    material.parameters.push_back({values, values, values, values, true, false});
+  }
+  material.covariance_names.clear();
+  material.covariance = material.covariance_clustered = {};
+  const std::string text = ToJson(material);
+  EXPECT_EQ(ToJson(MaterialFromJson(text, "m.json")), text);
+  for (const double beyond : {-0.46, 41.0}) {
+    material.parameters[10].values = {beyond};
+    EXPECT_THROW(MaterialFromJson(ToJson(material), "m.json"), InputError) << beyond;
+  }
+}
+
 TEST(MaterialJson, RefusesWhatIsNotAMaterial) {
   const std::string good = ToJson(FittedMaterial());
   const auto without = [&](const char* member) {
