@@ -9,7 +9,7 @@ double MeanOf(const Spectrum& color) {
   return std::accumulate(color.begin(), color.end(), 0.0) / static_cast<double>(color.size());
 }
 
-MetalBase MetalBaseOf(const Spectrum& f0, const Spectrum& diffuse, double dielectric) {
+MetalBase MetalBaseOf(const Spectrum& f0, const Spectrum& diffuse, double dielectric, const Spectrum& tint) {
   MetalBase result;
   // Values of which the scale is free may reflect more than they receive; no base does.
   const double f = std::min(1.0, MeanOf(f0)), rho = MeanOf(diffuse);
@@ -27,7 +27,7 @@ MetalBase MetalBaseOf(const Spectrum& f0, const Spectrum& diffuse, double dielec
   }
   for (std::size_t c = 0; c < 3; ++c) {
     const double m = 1 - result.metalness;
-    result.base[c] = std::clamp((f0[c] - m * dielectric) / result.metalness, 0.0, 1.0);
+    result.base[c] = std::clamp((f0[c] - m * dielectric * tint[c]) / result.metalness, 0.0, 1.0);
   }
   return result;
 }

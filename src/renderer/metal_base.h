@@ -17,7 +17,8 @@ struct MetalBase {
   double metalness = 1;
   Color3 base = {0, 0, 0};
 };
-MetalBase MetalBaseOf(const Spectrum& f0, const Spectrum& diffuse, double dielectric);
+// `tint`: of the dielectric's reflectance.
+MetalBase MetalBaseOf(const Spectrum& f0, const Spectrum& diffuse, double dielectric, const Spectrum& tint = {1, 1, 1});
 
 double MeanOf(const Spectrum& color);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/vndf.h"
 #include "lobefit/math/directions.h"
 
@@ -78,7 +79,7 @@ class SurfaceEvaluator {
     const double lost = surface_.energy_compensation ? 1 / (*albedos_[l])(o.z, 1, 1) - 1 : 0.0;
     for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) {
       const double f = lobe.fresnel(c, cos_d);
-      values[c] += specular * f * (1 + f * lost);
+      values[c] += specular * f * (1 + f * lost) * (lobe.tint.empty() ? 1.0 : lobe.tint[c]);
     }
   }
 
@@ -94,8 +95,17 @@ class SurfaceEvaluator {
       left = 1 - LayerAlbedo(Dot(frames_[surface_.layer_lobe].normal, wo));
     }
     for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) {
-      values[c] += surface_.diffuse[c] * left * kInvPi * cos_i / wi.z;
+      values[c] += Scattered(surface_.diffuse[c], wi, wo, cos_i, cos_o) * left * cos_i / wi.z;
     }
+  }
+
+  // f_r of the diffuse part in the frame of its normal.
+  double Scattered(double albedo, const Vec3& wi, const Vec3& wo, double cos_i, double cos_o) const {
+    if (surface_.diffuse_roughness == 0) return albedo * kInvPi;
+    // The term needs the cosines and the product of the parts along the surface only.
+    const double along = std::max(0.0, Dot(wi, wo)) - cos_i * cos_o;
+    const OrenNayar f = OrenNayarDiffuse(albedo, surface_.diffuse_roughness, {along, 0, cos_i}, {1, 0, cos_o});
+    return f.single + f.multiple;
   }
 
   double LayerAlbedo(double cos_o) const {
@@ -123,7 +133,12 @@ double SurfaceFresnel::operator()(std::size_t channel, double cos_d) const {
     case Kind::kSchlick:
       break;
   }
-  return f0[channel] + (f90[channel] - f0[channel]) * Power5(std::max(0.0, 1 - cos_d));
+  const double rest = std::max(0.0, 1 - cos_d), schlick = f0[channel] + (f90[channel] - f0[channel]) * Power5(rest);
+  if (f82.empty()) return schlick;
+  constexpr double kEdge = 1.0 / 7;
+  const double at_edge = f0[channel] + (f90[channel] - f0[channel]) * Power5(1 - kEdge);
+  return schlick -
+         (1 - f82[channel]) * at_edge / (kEdge * Power5(1 - kEdge) * (1 - kEdge)) * cos_d * Power5(rest) * rest;
 }
 
 BrdfFunction SurfaceBrdf(const Surface& surface) {
@@ -218,6 +233,10 @@ SurfaceLobe LobeOf(const FittedBrdf& fit, std::size_t lobe, double weight) {
   for (std::size_t c = 0; c < ChannelsOf(fit); ++c) {
     result.fresnel.f0[c] = fit.Fresnel(lobe, ChannelOf(fit, c), 1) / weight;
     result.fresnel.f90[c] = std::min(1.0, fit.Fresnel(lobe, ChannelOf(fit, c), 0) / weight);
+    if (fitted.choices.fresnel == Fresnel::kSchlickF82 && weight == 1) {
+      const std::size_t tint = FirstFresnel(fit.material().model, lobe) + 1;
+      result.fresnel.f82.push_back(fit.material().parameters[tint].values[ChannelOf(fit, c)]);
+    }
   }
   return result;
 }

@@ -28,6 +28,7 @@ struct SurfaceFresnel {
   enum class Kind { kSchlick, kConductor, kDielectric };
   Kind kind = Kind::kSchlick;
   Spectrum f0 = {0, 0, 0}, f90 = {1, 1, 1};  // kSchlick
+  Spectrum f82 = {};                         // kSchlick: factor of the term at 82 degrees; empty: 1
   Spectrum eta = {1, 1, 1}, k = {0, 0, 0};   // kConductor; kDielectric takes eta[0]
 
   double operator()(std::size_t channel, double cos_d) const;
@@ -42,6 +43,7 @@ struct SurfaceLobe {
   Vec3 normal = {0, 0, 1};
   SurfaceFresnel fresnel;
   double weight = 1;
+  Spectrum tint = {};  // factor a channel, after the compensation of energy; empty: 1
 };
 
 struct Surface {
@@ -51,6 +53,8 @@ struct Surface {
   bool energy_compensation = false;
   Spectrum diffuse = {0, 0, 0};  // albedo, any mixing weight included; as long as every other Spectrum of the surface
   Vec3 diffuse_normal = {0, 0, 1};
+  // Energy-preserving Oren-Nayar, as MaterialX' GLSL evaluates it: directions more than 90 degrees apart count as 90.
+  double diffuse_roughness = 0;
   // What dims the diffuse part: nothing; the largest channel of Schlick's term of `layer` (glTF); the mean albedo of
   // lobes[layer_lobe] (OpenPBR in MaterialX).
   enum class Layering { kNone, kSchlick, kAlbedo };
@@ -80,7 +84,7 @@ ConductorIndex NearestConductor(const std::function<double(double)>& fresnel);
 ConductorIndex ConductorOfReflectance(double r);
 
 // A lobe of the fit in the words of surfaces, a grey channel three times; Schlick's term with the fit's reflectance at
-// normal incidence, times 1 / weight.
+// normal incidence, times 1 / weight; its tint at 82 degrees where the weight is 1.
 SurfaceLobe LobeOf(const FittedBrdf& fit, std::size_t lobe, double weight);
 // The index whose Fresnel term is nearest to that of the fit's lobe over `share`, all channels; the fit's own where it
 // is a conductor's and the share is 1.

@@ -52,14 +52,18 @@ std::string Input(const char* name, const char* type, const char* value) {
 TEST(OpenPbrInputs, CountOrAreErrors) {
   const double plain = ValuesOf(Import(OpenPbr("")))[0];
   EXPECT_NEAR(ValuesOf(Import(OpenPbr(Input("base_weight", "float", "0.5"))))[0] / plain, 0.5, 0.02);
+  // Of a metal it is the reflectance at 82 degrees: little changes near the normal, much at grazing.
+  const Vec3 at_82 = FromSpherical(DegreesToRadians(82), 0), across = FromSpherical(DegreesToRadians(82), kPi);
+  double tinted[3], white[3];
+  Import(OpenPbr(Input("specular_color", "color3", "0.2, 0.2, 0.2"))).brdf(at_82, across, tinted);
+  Import(OpenPbr("")).brdf(at_82, across, white);
+  EXPECT_NEAR(tinted[0] / white[0], 0.2, 0.03);
   // Of no effect, since the layer has no weight.
   EXPECT_EQ(ValuesOf(Import(OpenPbr(Input("coat_roughness", "float", "0.4"))))[0], plain);
   for (const auto& [name, value] : std::vector<std::pair<const char*, const char*>>{{"specular_weight", "0.3"},
-                                                                                    {"specular_color", "0.2, 0.2, 0.2"},
                                                                                     {"coat_weight", "1"},
                                                                                     {"fuzz_weight", "1"},
                                                                                     {"thin_film_weight", "0.5"},
-                                                                                    {"base_diffuse_roughness", "0.2"},
                                                                                     {"geometry_opacity", "0.5"}}) {
     EXPECT_THAT(ErrorOf(OpenPbr(Input(name, "float", value))), HasSubstr(std::string("the input '") + name)) << name;
   }

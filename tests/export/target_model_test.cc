@@ -214,6 +214,76 @@ TEST_F(TargetModel, MaterialX) {
       3e-3, 0.1);
 }
 
+// An edge tint over a rough diffuse part.
+SyntheticCase Tinted() {
+  SyntheticCase synthetic = test::Turned();
+  synthetic.model.lobes[0].fresnel = Fresnel::kSchlickF82;
+  synthetic.model.diffuse = Diffuse::kOrenNayar;
+  const std::vector<double> diffuse = {0.3, 0.2, 0.1};
+  synthetic.values.back() = {0.5, 0.8, 1};
+  synthetic.values.push_back({0.7, 0.7, 0.7});
+  synthetic.values.push_back(diffuse);
+  return synthetic;
+}
+
+// Share of light that a rough surface sends back at once [the terms of MaterialX' GLSL].
+double RoughShare(double c, double roughness) {
+  const double sn = std::sqrt(1 - c * c), a = 1 / (1 + (0.5 - 2 / (3 * kPi)) * roughness);
+  const double g = sn * (std::acos(c) - sn * c) + 2.0 / 3 * (sn / c * (1 - sn * sn * sn) - sn);
+  return a * (1 + roughness * g / kPi);
+}
+
+TEST_F(TargetModel, MaterialXTintAndRoughDiffuse) {
+  const std::string text = Export(Tinted(), "materialx", "sample.mtlx");
+  const auto value = [&](const std::string& name) {
+    return Find(text, "name=\"" + name + "\" type=\"[a-z0-9]*\" value=\"([^\"]*)\"");
+  };
+  const std::vector<double> f0 = value("color0"), tint = value("color82"), rho = value("color");
+  EXPECT_EQ(tint, (std::vector<double>{0.5, 0.8, 1}));
+  const std::vector<double> alpha = value("roughness");
+  const double roughness = Find(text, "name=\"roughness\" type=\"float\" value=\"([^\"]*)\"")[0];
+  EXPECT_EQ(roughness, 0.7);
+  EXPECT_NE(text.find("<input name=\"energy_compensation\" type=\"boolean\" value=\"true\"/>"), std::string::npos);
+  const double mean = std::sqrt(alpha[0] * alpha[1]), turn = FittedBrdf(test::MaterialOf(Tinted())).lobes()[0].rotation;
+  const double single = 1 / (1 + (0.5 - 2 / (3 * kPi)) * roughness);
+  const double average = single * (1 + (2.0 / 3 - 28 / (15 * kPi)) * roughness);
+  ExpectSame(
+      [&](const Vec3& wi, const Vec3& wo) {
+        const double c = Dot(wi, Normalized(wi + wo)),
+                     lobe = LobeFactor(TurnedFrame(turn, {0, 0, 1}), alpha[0], alpha[1], wi, wo, "mean");
+        const double e = LobeAlbedo(mean, wo.z), s = std::max(0.0, Dot(wi, wo)) - wi.z * wo.z;
+        const double st = s > 0 ? s / std::max(wi.z, wo.z) : s;
+        Rgb3 f = {};
+        for (std::size_t j = 0; j < 3; ++j) {
+          const double edge = SchlickFresnel(f0[j], 1.0 / 7) * (1 - tint[j]) * 7 / std::pow(6.0 / 7, 6);
+          const double fresnel = SchlickFresnel(f0[j], c) - edge * c * std::pow(1 - c, 6);
+          const double again = rho[j] * rho[j] * average / (1 - rho[j] * (1 - average)) *
+                               (1 - RoughShare(wo.z, roughness)) * (1 - RoughShare(wi.z, roughness)) / (1 - average);
+          f[j] = lobe * fresnel * (1 + fresnel * (1 - e) / e) + (rho[j] * single * (1 + roughness * st) + again) / kPi;
+        }
+        return f;
+      },
+      // The albedo's table.
+      3e-3, 0.1);
+}
+
+// A metal with an edge tint and nothing else is OpenPBR's own.
+TEST_F(TargetModel, OpenPbrHoldsATintedMetalExactly) {
+  SyntheticCase metal = Tinted();
+  metal.model.diffuse = Diffuse::kNone;
+  metal.values.resize(metal.values.size() - 2);
+  const std::string text = Export(metal, "openpbr", "sample.openpbr.mtlx");
+  const auto value = [&](const std::string& name) {
+    return Find(text, "name=\"" + name + "\" type=\"[a-z0-9]*\" value=\"([^\"]*)\"");
+  };
+  EXPECT_EQ(value("base_metalness")[0], 1);
+  EXPECT_EQ(value("base_color"), (std::vector<double>{0.7, 0.66, 0.58}));
+  EXPECT_EQ(value("specular_color"), (std::vector<double>{0.5, 0.8, 1}));
+  for (const Carried& row : FindTarget("openpbr").carries(FittedBrdf(test::MaterialOf(metal)))) {
+    EXPECT_TRUE(row.feature != Feature::kFresnel || row.how == Carries::kExactly) << row.note;
+  }
+}
+
 TEST_F(TargetModel, Gltf) {
   const std::string text = Export(test::Tilted(), "gltf", "sample.gltf");
   const auto value = [&](const std::string& name) { return Find(text, "\"" + name + "\": (\\[[^\\]]*\\]|[-0-9.e]+)"); };

@@ -97,7 +97,16 @@ std::vector<Carried> CarriesMetalBase(const FittedBrdf& fit, std::vector<Carried
   return rows;
 }
 
-Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes) {
+void MarkOrenNayar(const FittedBrdf& fit, std::vector<Carried>* rows) {
+  const Model& model = fit.material().model;
+  if (model.diffuse != Diffuse::kOrenNayar) return;
+  const std::vector<double>& roughness = fit.material().parameters[FirstParameter(model, model.lobes.size())].values;
+  const bool same = std::all_of(roughness.begin(), roughness.end(), [&](double r) { return r == roughness[0]; });
+  Mark(rows, Feature::kDiffuse, same ? Carries::kExactly : Carries::kApproximately,
+       same ? "GLSL takes directions more than 90 degrees apart as 90" : "with the mean roughness of the channels");
+}
+
+Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes, bool tint_and_roughness) {
   Model model = fit.material().model;
   model.lobes.clear();
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
@@ -107,9 +116,13 @@ Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes) {
     const Ndf ndf = tilted ? Ndf::kEllipsoid : lobe.anisotropic ? Ndf::kGgxAnisotropic : Ndf::kGgx;
     const bool kept = FamilyOf(lobe.choices.ndf) == NdfFamily::kGgx && tilted == IsTilted(lobe.choices.ndf) &&
                       lobe.anisotropic != IsRound(lobe.choices.ndf);
-    model.lobes.push_back({kept ? lobe.choices.ndf : ndf, masking, Fresnel::kSchlick, ""});
+    const Fresnel fresnel = lobe.choices.fresnel;
+    const bool tinted = tint_and_roughness && fresnel != Fresnel::kSchlick && fresnel != Fresnel::kNone;
+    model.lobes.push_back(
+        {kept ? lobe.choices.ndf : ndf, masking, tinted ? Fresnel::kSchlickF82 : Fresnel::kSchlick, ""});
   }
-  if (model.diffuse != Diffuse::kNone) model.diffuse = Diffuse::kLambert;
+  const bool rough = tint_and_roughness && model.diffuse == Diffuse::kOrenNayar;
+  if (model.diffuse != Diffuse::kNone && !rough) model.diffuse = Diffuse::kLambert;
   return model;
 }
 

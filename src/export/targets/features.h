@@ -28,10 +28,13 @@ std::vector<Carried> CarriesConductors(const FittedBrdf& fit, Masking masking, c
 std::vector<Carried> CarriesMetalBase(const FittedBrdf& fit, std::vector<Carried> rows, const std::vector<double>& f0);
 
 bool AllHave(const FittedBrdf& fit, Fresnel fresnel);
+// The row of an Oren-Nayar diffuse part that goes to MaterialX' own node.
+void MarkOrenNayar(const FittedBrdf& fit, std::vector<Carried>* rows);
 
 // The model that is fitted for a target: GGX with this masking, Schlick's term, the strongest lobes that it holds.
 inline constexpr std::size_t kAnyNumber = 100;
-Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes);
+// `tint_and_roughness`: it has an edge tint for Fresnel terms that are not Schlick's, and Oren-Nayar diffuse parts.
+Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes, bool tint_and_roughness = false);
 
 // "" or that the target needs a lobe.
 std::string RefuseNoLobe(const FittedBrdf& fit);

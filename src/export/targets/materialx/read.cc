@@ -177,6 +177,17 @@ class MaterialXReader {
       Add(Source(node, "bg"), weight * (1 - mix), depth + 1, surface);
     } else if (type == "oren_nayar_diffuse_bsdf") {
       const Color3 color = Color(node, "color", {0.18, 0.18, 0.18});
+      const double roughness = Real(node, "roughness", 0);
+      const pugi::xml_node compensation = Input(node, "energy_compensation");
+      if (roughness != 0 && Trim(compensation.attribute("value").value()) != "true") {
+        xml_.Fail(node, "a rough diffuse part is understood with the input energy_compensation of true only");
+      }
+      const bool other = std::any_of(surface->diffuse.begin(), surface->diffuse.end(), [](double d) { return d != 0; });
+      if (other && roughness != surface->diffuse_roughness) {
+        xml_.Fail(node, "diffuse parts of different roughness are not understood");
+      }
+      if (roughness != 0 && own != 1) xml_.Fail(node, "a rough diffuse part is understood with the weight 1 only");
+      surface->diffuse_roughness = roughness;
       for (std::size_t c = 0; c < 3; ++c) surface->diffuse[c] += own * color[c];
       if (Input(node, "normal")) surface->diffuse_normal = Normalized(VectorInput(node, "normal", {0, 0, 1}));
     } else if (type == "generalized_schlick_bsdf" || type == "conductor_bsdf") {
@@ -202,6 +213,7 @@ class MaterialXReader {
     } else {
       lobe.fresnel.f0 = ColorSpectrum(node, "color0", {1, 1, 1});
       lobe.fresnel.f90 = ColorSpectrum(node, "color90", {1, 1, 1});
+      if (Input(node, "color82")) lobe.fresnel.f82 = ColorSpectrum(node, "color82", {1, 1, 1});
     }
     surface->lobes.push_back(lobe);
   }
@@ -210,6 +222,8 @@ class MaterialXReader {
     OpenPbr parameters;
     parameters.base_color = Color(node, "base_color", parameters.base_color);
     parameters.base_weight = Real(node, "base_weight", 1);
+    parameters.specular_color = Color(node, "specular_color", parameters.specular_color);
+    parameters.diffuse_roughness = Real(node, "base_diffuse_roughness", 0);
     parameters.metalness = Real(node, "base_metalness", 0);
     parameters.ior = Real(node, "specular_ior", 1.5);
     parameters.roughness = {Real(node, "specular_roughness", 0.3), Real(node, "specular_roughness_anisotropy", 0)};

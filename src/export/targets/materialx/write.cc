@@ -1,5 +1,7 @@
 #include "lobefit/export/targets/materialx/write.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "lobefit/base/file.h"
@@ -7,6 +9,7 @@
 #include "lobefit/export/targets/materialx/nodes.h"
 #include "lobefit/export/targets/materialx/read.h"
 #include "lobefit/export/targets/text.h"
+#include "lobefit/renderer/open_pbr.h"
 
 namespace lobefit {
 namespace {
@@ -19,7 +22,9 @@ std::string LobeNode(const std::string& name, const SurfaceLobe& lobe, const Fra
   };
   return fmt::format("  <{} name=\"{}\" type=\"BSDF\">\n", node, name) +
          (conductor ? color("ior", lobe.fresnel.eta) + color("extinction", lobe.fresnel.k)
-                    : color("color0", lobe.fresnel.f0) + color("color90", lobe.fresnel.f90)) +
+                    : color("color0", lobe.fresnel.f0) +
+                          (lobe.fresnel.f82.empty() ? "" : color("color82", lobe.fresnel.f82)) +
+                          color("color90", lobe.fresnel.f90)) +
          fmt::format(
              "    <input name=\"roughness\" type=\"vector2\" value=\"{}, {}\"/>\n"
              "    <input name=\"normal\" type=\"vector3\" nodename=\"{}\"/>\n"
@@ -30,14 +35,19 @@ std::string LobeNode(const std::string& name, const SurfaceLobe& lobe, const Fra
 
 std::vector<Carried> CarriesMaterialX(const FittedBrdf& fit) {
   std::vector<Carried> rows = CarriesLobes(fit, Masking::kImplicit, kMaterialXMasking);
-  if (!AllHave(fit, Fresnel::kSchlick) && !AllHave(fit, Fresnel::kNone) && !AllHave(fit, Fresnel::kConductor)) {
+  MarkOrenNayar(fit, &rows);
+  const bool own = std::all_of(fit.lobes().begin(), fit.lobes().end(), [](const FittedLobe& lobe) {
+    const Fresnel fresnel = lobe.choices.fresnel;
+    return fresnel != Fresnel::kDielectric && fresnel != Fresnel::kCurve;
+  });
+  if (!own) {
     Mark(&rows, Feature::kFresnel, Carries::kApproximately,
          "Schlick's term between the reflectances at 0 and 90 degrees");
   }
   return rows;
 }
 
-Model HeightModel(const FittedBrdf& fit) { return OwnModel(fit, Masking::kSmithHeight, kAnyNumber); }
+Model HeightModel(const FittedBrdf& fit) { return OwnModel(fit, Masking::kSmithHeight, kAnyNumber, true); }
 BrdfFunction EvaluateMaterialX(const FittedBrdf& fit) { return InChannelsOf(fit, SurfaceBrdf(MaterialXSurface(fit))); }
 
 WrittenFiles WriteMaterialX(const FittedBrdf& fit, const WriteContext& context) {
@@ -66,8 +76,9 @@ WrittenFiles WriteMaterialX(const FittedBrdf& fit, const WriteContext& context) 
     nodes += fmt::format(
         "  <oren_nayar_diffuse_bsdf name=\"{}_diffuse\" type=\"BSDF\">\n"
         "    <input name=\"color\" type=\"color3\" value=\"{}\"/>\n"
-        "    <input name=\"roughness\" type=\"float\" value=\"0\"/>\n  </oren_nayar_diffuse_bsdf>\n",
-        id, Numbers9(surface.diffuse, ", "));
+        "    <input name=\"roughness\" type=\"float\" value=\"{}\"/>\n"
+        "    <input name=\"energy_compensation\" type=\"boolean\" value=\"true\"/>\n  </oren_nayar_diffuse_bsdf>\n",
+        id, Numbers9(surface.diffuse, ", "), Number9(surface.diffuse_roughness));
     add(id + "_diffuse");
   }
   nodes += fmt::format(
@@ -95,6 +106,7 @@ Surface MaterialXSurface(const FittedBrdf& fit) {
     }
   }
   surface.diffuse = DiffuseOf(fit);
+  surface.diffuse_roughness = DiffuseRoughnessOf(fit);
   return surface;
 }
 

@@ -1,5 +1,7 @@
 #include "lobefit/export/targets/openpbr/write.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "lobefit/base/file.h"
@@ -19,10 +21,21 @@ std::vector<Carried> CarriesOpenPbr(const FittedBrdf& fit) {
   Spectrum f0;
   for (const double base : written.base_color)
     f0.push_back(written.metalness * base + (1 - written.metalness) * root * root);
-  return CarriesMetalBase(fit, CarriesLobes(fit, Masking::kImplicit, kMaterialXMasking), f0);
+  std::vector<Carried> rows = CarriesMetalBase(fit, CarriesLobes(fit, Masking::kImplicit, kMaterialXMasking), f0);
+  if (written.metalness == 1 && AllHave(fit, Fresnel::kSchlickF82)) {
+    const Spectrum tint = LobeOf(fit, StrongestLobe(fit), 1).fresnel.f82;
+    const bool held = std::all_of(tint.begin(), tint.end(), [](double t) { return t <= 1; });
+    Mark(&rows, Feature::kFresnel, held ? Carries::kExactly : Carries::kApproximately,
+         held ? "" : "a tint of at most 1");
+  }
+  if (written.diffuse_roughness > 0) {
+    Mark(&rows, Feature::kDiffuse, Carries::kApproximately,
+         "roughness and colour as the base under the specular layer, dimmed by it");
+  }
+  return rows;
 }
 
-Model OneLobeModel(const FittedBrdf& fit) { return OwnModel(fit, Masking::kSmithHeight, 1); }
+Model OneLobeModel(const FittedBrdf& fit) { return OwnModel(fit, Masking::kSmithHeight, 1, true); }
 BrdfFunction EvaluateOpenPbr(const FittedBrdf& fit) {
   return InChannelsOf(fit, SurfaceBrdf(OpenPbrSurface(OpenPbrOf(fit))));
 }
@@ -38,7 +51,9 @@ WrittenFiles WriteOpenPbr(const FittedBrdf& fit, const WriteContext& context) {
       MeshFrame() + frame.nodes + fmt::format("  <open_pbr_surface name=\"{}_surface\" type=\"surfaceshader\">\n", id) +
       fmt::format("    <input name=\"base_color\" type=\"color3\" value=\"{}\"/>\n",
                   Numbers9(parameters.base_color, ", ")) +
-      real("base_metalness", parameters.metalness) + real("base_diffuse_roughness", 0) +
+      real("base_metalness", parameters.metalness) + real("base_diffuse_roughness", parameters.diffuse_roughness) +
+      fmt::format("    <input name=\"specular_color\" type=\"color3\" value=\"{}\"/>\n",
+                  Numbers9(parameters.specular_color, ", ")) +
       real("specular_roughness", parameters.roughness.roughness) +
       real("specular_roughness_anisotropy", parameters.roughness.anisotropy) + real("specular_ior", parameters.ior) +
       fmt::format(
