@@ -129,7 +129,10 @@ Json ParametersJson(const ReportData& data) {
     if (parameter.name.ends_with("eta") || parameter.name.ends_with("k"))
       high = std::min(high, std::max(6.0, 2 * most));
     if (parameter.name.find("scale") != std::string::npos) high = std::max(1.0, 4 * most);
-    if (parameter.group == ParameterGroup::kDiffuse) high = std::max(1.0, 1.5 * most);
+    if (parameter.group == ParameterGroup::kDiffuse && !parameter.shared) high = std::max(1.0, 1.5 * most);
+    const bool is_shape = parameter.group == ParameterGroup::kShape;
+    if (is_shape && parameter.low < 0 && parameter.unit == "1") high = std::min(high, std::max(4.0, 1.5 * most));
+    if (parameter.name.ends_with("gamma")) logarithmic = true;
     list.push_back({{"name", parameter.name},
                     {"symbol", Symbol(parameter)},
                     {"lobe", LobeOf(parameter)},
@@ -143,12 +146,48 @@ Json ParametersJson(const ReportData& data) {
   return list;
 }
 
+// A profile's spline: for each piece its left end in u, and for each power the coefficient of each number of the fit.
+Json SplineJson(const Lobe& lobe) {
+  if (FamilyOf(lobe.ndf) != NdfFamily::kProfile) return nullptr;
+  const ProfileSpline& spline = *GridOf(lobe)->spline();
+  Json left = Json::array(), coefficients = Json::array();
+  for (std::size_t i = 0; i < spline.intervals(); ++i) {
+    left.push_back(spline.Left(i));
+    Json powers = Json::array();
+    for (std::size_t p = 0; p < 4; ++p) {
+      const double* row = spline.Coefficients(i) + p * spline.size();
+      powers.push_back(List(std::vector<double>(row, row + spline.size()), [](double c) { return Rounded(c, 12); }));
+    }
+    coefficients.push_back(powers);
+  }
+  return {{"left", left}, {"coefficients", coefficients}};
+}
+
+int DiffuseNumber(Diffuse diffuse) {
+  switch (diffuse) {
+    case Diffuse::kLambert:
+      return 1;
+    case Diffuse::kMicrofacet:
+      return 2;
+    case Diffuse::kInterfaced:
+      return 3;
+    case Diffuse::kOrenNayar:
+      return 4;
+    case Diffuse::kNone:
+      break;
+  }
+  return 0;
+}
+
 Json LobesJson(const Model& model) {
   Json lobes = Json::array();
   for (std::size_t l = 0; l < model.lobes.size(); ++l) {
     const Lobe& lobe = model.lobes[l];
     lobes.push_back({{"family", FamilyOf(lobe.ndf) == NdfFamily::kBeckmann ? 1 : 0},
                      {"round", IsRound(lobe.ndf)},
+                     {"retro", lobe.direction == LobeDirection::kRetro},
+                     {"shapeParameters", ShapeParameters(lobe)},
+                     {"spline", SplineJson(lobe)},
                      {"masking", NameOf(MaskingChoices(), lobe.masking)},
                      {"fresnel", NameOf(FresnelChoices(), lobe.fresnel)},
                      {"first", FirstParameter(model, l)},
@@ -172,13 +211,12 @@ std::string DataJson(const ReportData& data) {
     unit[c] = 1;
     rgb.push_back(List(to_color.Linear(unit.data()), [](double v) { return Rounded(v, 12); }));
   }
-  const int diffuse = model.diffuse == Diffuse::kNone ? 0 : model.diffuse == Diffuse::kLambert ? 1 : 2;
   const Json json = {{"channels", data.channel_names},
                      {"colors", List(data.channel_colors, HexColor)},
                      {"dark", List(data.channel_colors, [&](Rgb c) { return HexColor(darker(c)); })},
                      {"shown", data.shown_channels},
                      {"rgb", rgb},
-                     {"model", {{"diffuse", diffuse}, {"lobes", LobesJson(model)}}},
+                     {"model", {{"diffuse", DiffuseNumber(model.diffuse)}, {"lobes", LobesJson(model)}}},
                      {"parameters", ParametersJson(data)},
                      {"slices", SlicesJson(data)},
                      {"table", data.measurement.isotropic ? TableJson(data, to_color) : Json(nullptr)},

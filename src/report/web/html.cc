@@ -65,10 +65,9 @@ bool IsLive(const Model& model) {
   constexpr std::size_t kMostLobes = 8;  // of the shader
   const auto known = [](const Lobe& l) {
     const NdfFamily family = FamilyOf(l.ndf);
-    return (family == NdfFamily::kGgx || family == NdfFamily::kBeckmann) && l.fresnel != Fresnel::kSchlickF82 &&
-           l.fresnel != Fresnel::kCurve && l.direction == LobeDirection::kSpecular;
+    return family != NdfFamily::kKagiwadaKalaba && family != NdfFamily::kSphericalGaussian;
   };
-  return !model.lobes.empty() && model.lobes.size() <= kMostLobes && !IsDirectional(model.diffuse) &&
+  return !model.lobes.empty() && model.lobes.size() <= kMostLobes &&
          std::all_of(model.lobes.begin(), model.lobes.end(), known);
 }
 

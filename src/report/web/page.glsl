@@ -8,11 +8,15 @@ uniform int mode;            // 0: sphere of the fit, 1: measured sphere, 2: val
 uniform int lobes;
 uniform int channels;
 uniform vec4 shape[8];       // mean slope x, y; a, b of the Cholesky factor
-uniform vec4 kind[8];        // c; family; masking; Fresnel: 0 Schlick, 1 conductor, 2 dielectric, 3 scale
-uniform int diffuseKind;     // 0: none, 1: Lambert, 2: facets
-// Row l, column c: parameters of lobe l's Fresnel term in channel c; row `lobes`: diffuse albedo, then red, green, blue
-// of the channel.
+uniform vec4 kind[8];        // c; family; masking; Fresnel: 0 Schlick, 1 conductor, 2 dielectric, 3 scale, 4 tinted, 5 curve
+uniform vec4 radial[8];      // 0 or the number of nodes of the ratio; pieces of the excess, 0 for Student's; gamma; 1: retro
+uniform int diffuseKind;     // 0: none, 1: Lambert, 2: facets, 3: interfaced, 4: Oren-Nayar
+// Rows 2 l and 2 l + 1, column c: parameters of lobe l's Fresnel term in channel c; rows from 2 `lobes`: diffuse albedo,
+// then red, green, blue of the channel; and the diffuse part's index or roughness.
 uniform sampler2D parameters;
+// Row l of a radial lobe: the tail of the ratio (its logarithm, slope and bend, and where it begins); step of the
+// nodes; then for each piece of the excess its left end and its cubic; then value and slope of the ratio at each node.
+uniform sampler2D profiles;
 uniform sampler2D pairs;     // column i: wi, wo
 uniform vec3 light;
 uniform float exposure;
@@ -52,38 +56,74 @@ float facets(vec3 wi, vec3 wo, vec3 h) {
   }
   return sum / (PI * lobefit_area(wi, wo, h, s.x, s.y, s.z, s.w, c, family, int(kind[0].z), 1.0, 1.0));
 }
-// What all channels share: the diffuse part of albedo 1 and each lobe without its Fresnel term.
-float cosD;
+float excessOf(int k, float u) {
+  if (radial[k].y == 0.0) return 2.0 * u - radial[k].z * log(1.0 + (exp(u) - 1.0) / (radial[k].z - 1.0));
+  int piece = 0;
+  for (int i = 1; i < int(radial[k].y); ++i) {
+    if (u >= texelFetch(profiles, ivec2(2 + 2 * i, k), 0).x) piece = i;
+  }
+  float x = u - texelFetch(profiles, ivec2(2 + 2 * piece, k), 0).x;
+  vec4 c = texelFetch(profiles, ivec2(3 + 2 * piece, k), 0);
+  return c.x + x * (c.y + x * (c.z + x * c.w));
+}
+float ratioOf(int k, float w) {
+  vec4 tail = texelFetch(profiles, ivec2(0, k), 0);
+  if (w >= tail.w) return exp(tail.x + tail.y * (w - tail.w) + tail.z * exp(-2.0 * w));
+  float step = texelFetch(profiles, ivec2(1, k), 0).x, position = w / step;
+  int node = min(int(position), int(radial[k].x) - 2), first = 2 + 2 * int(radial[k].y);
+  float t = position - float(node), s = 1.0 - t;
+  vec4 a = texelFetch(profiles, ivec2(first + node, k), 0), b = texelFetch(profiles, ivec2(first + node + 1, k), 0);
+  return s * s * (1.0 + 2.0 * t) * a.x + t * t * (1.0 + 2.0 * s) * b.x + step * s * t * (s * a.y - t * b.y);
+}
+// What all channels share: the two directions, the diffuse part of albedo 1 and each lobe without its Fresnel term.
+vec3 toLight, toViewer;
 float diffusePart;
+float cosD[8];
 float lobePart[8];
 void prepare(vec3 wi, vec3 wo) {
+  toLight = wi;
+  toViewer = wo;
   vec3 h = normalize(wi + wo);
-  cosD = dot(wi, h);
   for (int k = 0; k < 8; ++k) {
     if (k >= lobes) break;
     vec4 s = shape[k];
-    lobePart[k] = lobefit_lobe(wi, wo, h, s.x, s.y, s.z, s.w, kind[k].x, int(kind[k].y), int(kind[k].z), 0.0, 1.0, 1.0);
+    float c = kind[k].x, excess = 0.0, ratioI = 1.0, ratioO = 1.0;
+    vec3 i = radial[k].w > 0.0 ? vec3(-wi.xy, wi.z) : wi, own = normalize(i + wo);
+    if (radial[k].x > 0.0) {
+      excess = excessOf(k, lobefit_u(own, s.x, s.y, s.z, s.w, c));
+      ratioI = ratioOf(k, lobefit_w(i, s.x, s.y, s.z, s.w, c));
+      ratioO = ratioOf(k, lobefit_w(wo, s.x, s.y, s.z, s.w, c));
+    }
+    cosD[k] = dot(i, own);
+    lobePart[k] = lobefit_lobe(i, wo, own, s.x, s.y, s.z, s.w, c, int(kind[k].y), int(kind[k].z), excess, ratioI, ratioO);
   }
-  diffusePart = diffuseKind == 0 ? 0.0 : diffuseKind == 1 ? 1.0 / PI : facets(wi, wo, h);
+  diffusePart = diffuseKind == 1 ? 1.0 / PI : diffuseKind == 2 ? facets(wi, wo, h) : 0.0;
 }
-float fresnel(int kindOf, vec2 p) {
-  if (kindOf == 0) return p.x + (1.0 - p.x) * lobefit_schlick(cosD);
-  if (kindOf == 1) return lobefit_conductor(cosD, p.x, p.y);
-  if (kindOf == 2) return lobefit_dielectric(cosD, p.x);
+float fresnel(int kindOf, float c, vec4 p, vec2 q) {
+  if (kindOf == 0) return p.x + (1.0 - p.x) * lobefit_schlick(c);
+  if (kindOf == 1) return lobefit_conductor(c, p.x, p.y);
+  if (kindOf == 2) return lobefit_dielectric(c, p.x);
+  if (kindOf == 4) return lobefit_schlick_f82(c, p.x, p.y);
+  if (kindOf == 5) return lobefit_curve(c, p.x, p.y, p.z, p.w, q.x, q.y);
   return p.x;
 }
 float channelValue(int channel) {
-  float f = texelFetch(parameters, ivec2(channel, lobes), 0).x * diffusePart;
+  float albedo = texelFetch(parameters, ivec2(channel, 2 * lobes), 0).x, f = albedo * diffusePart;
+  if (diffuseKind > 2) {
+    float own = texelFetch(parameters, ivec2(channel, 2 * lobes + 1), 0).x;
+    f = diffuseKind == 3 ? lobefit_interfaced(toLight, toViewer, own, albedo) : lobefit_oren_nayar(toLight, toViewer, own, albedo);
+  }
   for (int k = 0; k < 8; ++k) {
     if (k >= lobes) break;
-    f += lobePart[k] * fresnel(int(kind[k].w), texelFetch(parameters, ivec2(channel, k), 0).xy);
+    f += lobePart[k] * fresnel(int(kind[k].w), cosD[k], texelFetch(parameters, ivec2(channel, 2 * k), 0),
+                               texelFetch(parameters, ivec2(channel, 2 * k + 1), 0).xy);
   }
   return f;
 }
 vec3 fitted(vec3 wi, vec3 wo) {
   prepare(wi, wo);
   vec3 sum = vec3(0.0);
-  for (int c = 0; c < channels; ++c) sum += channelValue(c) * texelFetch(parameters, ivec2(c, lobes), 0).yzw;
+  for (int c = 0; c < channels; ++c) sum += channelValue(c) * texelFetch(parameters, ivec2(c, 2 * lobes), 0).yzw;
   return sum;
 }
 vec4 fromTable(vec3 wi, vec3 wo) {

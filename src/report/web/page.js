@@ -23,6 +23,83 @@ function frameOf(k) {  // slope coordinates of lobe k from the ellipsoid: M = A^
   const a = Math.sqrt(q11), b = q12 / a, c = Math.sqrt(Math.max(1e-12, q22 - b * b));
   return {x, y, a, b, c};
 }
+// What the shader looks up of a radial profile: its density over GGX's in u = ln(1 + t), as cubics, and its M (the integral of
+// masking) over GGX's in w = asinh(a), at nodes. M(a) = 2 / Z times the integral of f s (s - a atan(s / a)) over s, t = a^2 + s^2.
+const GAUSS = (() => {
+  const n = 12, rule = [];
+  for (let i = 0; i < n; ++i) {
+    let x = Math.cos(Math.PI * (i + 0.75) / (n + 0.5)), slope = 1;
+    for (let k = 0; k < 50; ++k) {
+      let p = 1, q = 0;
+      for (let j = 1; j <= n; ++j) [p, q] = [((2 * j - 1) * x * p - (j - 1) * q) / j, p];
+      slope = n * (x * p - q) / (x * x - 1);
+      x -= p / slope;
+    }
+    rule.push([x, 2 / ((1 - x * x) * slope * slope)]);
+  }
+  return rule;
+})();
+function gauss(from, to, f) {
+  const half = (to - from) / 2, center = from + half;
+  return half * GAUSS.reduce((sum, [x, weight]) => sum + weight * f(center + half * x), 0);
+}
+const kernel = (s, a) => { const x = s / a; return x < 0.05 ? a * x * x * x * (1 / 3 - x * x * (1 / 5 - x * x / 7)) : s - a * Math.atan2(s, a); };
+const NODE_STEP = 1 / 16, RATIO_END = 5;
+function profileOf(k) {
+  const lobe = lobes[k], own = i => values[lobe.first + 5 + i][0];
+  let pieces = [], lnF, exponent, knots;
+  if (lobe.spline) {
+    const K = lobe.shapeParameters - 5;
+    pieces = lobe.spline.left.map((left, i) => [left, lobe.spline.coefficients[i].map(row => row.reduce((sum, c, j) => sum + c * own(j), 0))]);
+    exponent = 2 + own(K - 1);
+    knots = lobe.spline.left.map(u => Math.sqrt(Math.expm1(u)));
+    lnF = t => {
+      const u = Math.log1p(t);
+      let i = 0;
+      while (i + 1 < pieces.length && u >= pieces[i + 1][0]) ++i;
+      const x = u - pieces[i][0], c = pieces[i][1];
+      return c[0] + x * (c[1] + x * (c[2] + x * c[3])) - 2 * u;
+    };
+  } else {
+    exponent = own(0);
+    knots = [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32].map(r => r * Math.sqrt(exponent - 1));
+    lnF = t => -exponent * Math.log1p(t / (exponent - 1));
+  }
+  const integral = a => {
+    const ends = knots.filter(r => r > a).map(r => Math.sqrt((r - a) * (r + a))), last = Math.max(a, knots[knots.length - 1]);
+    for (const factor of [2, 4]) ends.push(Math.sqrt((factor * last - a) * (factor * last + a)));
+    for (let s = a; s > 0 && s < 0.7 * ends[0]; s *= 2) ends.unshift(s);
+    ends.sort((x, y) => x - y);
+    let sum = 0, from = 0;
+    for (const to of ends) { sum += gauss(from, to, s => Math.exp(lnF(a * a + s * s)) * s * kernel(s, a)); from = to; }
+    // Beyond, in y = s^-(2 c - 3), where the integrand is smooth.
+    const power = 2 * exponent - 3;
+    return sum + gauss(0, Math.pow(from, -power), y => {
+      const s = Math.pow(y, -1 / power);
+      return Math.exp(lnF(a * a + s * s) + 2 * exponent * Math.log(s)) * kernel(s, a) / s / power;
+    });
+  };
+  // Z / pi.
+  let mass = 0, from = 0;
+  for (const to of knots.slice(1)) { mass += gauss(from, to, r => 2 * r * Math.exp(lnF(r * r))); from = to; }
+  const tail = 2 * exponent - 2;
+  mass += gauss(0, Math.pow(from, -tail), y => { const r = Math.pow(y, -1 / tail); return 2 * Math.exp(lnF(r * r) + 2 * exponent * Math.log(r)) / tail; });
+  const ratio = w => {
+    const a = Math.sinh(Math.abs(w)), M = 2 / (Math.PI * mass) * integral(a);
+    return 2 * Math.exp(w) * (w < 0 ? a + M : M);
+  };
+  const nodes = Math.round(RATIO_END / NODE_STEP) + 1, at = [];
+  for (let i = -2; i < nodes + 2; ++i) at.push(ratio(i * NODE_STEP));
+  const texels = [], end = at[nodes + 1], slope = 4 - 2 * exponent, far = ratio(RATIO_END + 1.5);
+  if (end > 1e-9) {
+    const near = Math.exp(-2 * RATIO_END), bend = (Math.log(end / far) + 1.5 * slope) / (near - Math.exp(-2 * RATIO_END - 3));
+    texels.push(Math.log(end) - bend * near, slope, bend, RATIO_END);
+  } else texels.push(-80, 0, 0, RATIO_END);
+  texels.push(NODE_STEP, 0, 0, 0);
+  for (const [left, c] of pieces) texels.push(left, 0, 0, 0, c[0] - Math.log(mass), c[1], c[2], c[3]);
+  for (let i = 2; i < nodes + 2; ++i) texels.push(at[i], (at[i - 2] - 8 * at[i - 1] + 8 * at[i + 1] - at[i + 2]) / (12 * NODE_STEP), 0, 0);
+  return {nodes, pieces: pieces.length, gamma: lobe.spline ? 0 : exponent, texels};
+}
 const spherical = (theta, phi) => [Math.sin(theta) * Math.cos(phi), Math.sin(theta) * Math.sin(phi), Math.cos(theta)];
 
 // ---- parameter sliders ----
@@ -233,7 +310,7 @@ function startGl() {
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
   gl.useProgram(program);
-  for (const name of ['mode', 'lobes', 'channels', 'shape', 'kind', 'diffuseKind', 'parameters', 'pairs', 'light', 'exposure', 'texel', 'table', 'tableSize', 'edge']) {
+  for (const name of ['mode', 'lobes', 'channels', 'shape', 'kind', 'radial', 'diffuseKind', 'parameters', 'profiles', 'pairs', 'light', 'exposure', 'texel', 'table', 'tableSize', 'edge']) {
     uniforms[name] = gl.getUniformLocation(program, name);
   }
   gl.bindTexture(gl.TEXTURE_3D, gl.createTexture());
@@ -253,7 +330,8 @@ function startGl() {
   gl.uniform3fv(uniforms.tableSize, size);
   gl.uniform1i(uniforms.parameters, 1);
   gl.uniform1i(uniforms.pairs, 2);
-  for (const unit of [1, 2]) {
+  gl.uniform1i(uniforms.profiles, 3);
+  for (const unit of [1, 2, 3]) {
     gl.activeTexture(gl.TEXTURE0 + unit);
     gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
     for (const k of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, k, gl.NEAREST);
@@ -288,30 +366,48 @@ function evaluate(pairs) {
   return data.channels.map((_, c) => pairs.map((_, i) => view.getFloat32(4 * (c * n + i), true)));
 }
 const MASKINGS = ['smith-separable', 'smith-unclamped', 'smith-height', 'smith-height-direction', 'v-cavity', 'implicit', 'schlick-smith', 'kelemen'];
-const FRESNELS = ['schlick', 'conductor', 'dielectric', 'none'];
+const FRESNELS = ['schlick', 'conductor', 'dielectric', 'none', 'schlick-f82', 'curve'];
+// The tables of the profiles belong to their numbers: made again when one moved.
+let profileKey = '', profiles = [];
+function setProfiles() {
+  const key = JSON.stringify(lobes.map(lobe => values.slice(lobe.first + 5, lobe.first + lobe.shapeParameters)));
+  if (key === profileKey) return;
+  profileKey = key;
+  profiles = lobes.map((lobe, k) => lobe.shapeParameters > 5 ? profileOf(k) : null);
+  const width = Math.max(1, ...profiles.map(p => p ? p.texels.length / 4 : 1)), texels = new Float32Array(4 * width * Math.max(1, lobes.length));
+  profiles.forEach((p, k) => { if (p) texels.set(p.texels, 4 * width * k); });
+  upload(3, width, Math.max(1, lobes.length), texels);
+}
 function setModel() {
-  const shape = [], kind = [], channels = data.channels.length, rows = lobes.length + 1;
+  setProfiles();
+  const shape = [], kind = [], radial = [], channels = data.channels.length, rows = 2 * lobes.length + 2;
   const texels = new Float32Array(4 * channels * rows);
   lobes.forEach((lobe, k) => {
     const f = frameOf(k);
     shape.push(f.x, f.y, f.a, f.b);
     kind.push(f.c, lobe.family, MASKINGS.indexOf(lobe.masking), FRESNELS.indexOf(lobe.fresnel));
+    const p = profiles[k];
+    radial.push(p ? p.nodes : 0, p ? p.pieces : 0, p ? p.gamma : 0, lobe.retro ? 1 : 0);
     for (let c = 0; c < channels; ++c) {
       for (let i = 0; i < lobe.fresnelParameters; ++i) {
-        const v = values[lobe.first + 5 + i];
-        texels[4 * (k * channels + c) + i] = v[v.length === 1 ? 0 : c];
+        const v = values[lobe.first + lobe.shapeParameters + i];
+        texels[4 * ((2 * k + (i >> 2)) * channels + c) + (i & 3)] = v[v.length === 1 ? 0 : c];
       }
     }
   });
   for (let c = 0; c < channels; ++c) {
     const diffuse = data.model.diffuse ? values[values.length - 1] : [0];
-    texels.set([diffuse[diffuse.length === 1 ? 0 : c], ...data.rgb[c]], 4 * (lobes.length * channels + c));
+    texels.set([diffuse[diffuse.length === 1 ? 0 : c], ...data.rgb[c]], 4 * (2 * lobes.length * channels + c));
+    if (data.model.diffuse > 2) {
+      const own = values[values.length - 2];
+      texels[4 * ((2 * lobes.length + 1) * channels + c)] = own[own.length === 1 ? 0 : c];
+    }
   }
   upload(1, channels, rows, texels);
   gl.uniform1i(uniforms.lobes, lobes.length);
   gl.uniform1i(uniforms.channels, channels);
   gl.uniform1i(uniforms.diffuseKind, data.model.diffuse);
-  if (shape.length) { gl.uniform4fv(uniforms.shape, shape); gl.uniform4fv(uniforms.kind, kind); }
+  if (shape.length) { gl.uniform4fv(uniforms.shape, shape); gl.uniform4fv(uniforms.kind, kind); gl.uniform4fv(uniforms.radial, radial); }
   gl.uniform3fv(uniforms.light, light);
   gl.uniform1f(uniforms.exposure, data.exposure);
 }
