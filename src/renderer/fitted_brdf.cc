@@ -26,6 +26,7 @@ FittedBrdf::FittedBrdf(Material material)
     const Mat3 frame = EllipsoidRotation(ellipsoid);
     FittedLobe lobe;
     lobe.choices = material_.model.lobes[l];
+    lobe.retro = lobe.choices.direction == LobeDirection::kRetro;
     lobe.widths = {ellipsoid.alpha_x, ellipsoid.alpha_y};
     lobe.anisotropic = ellipsoid.alpha_x - ellipsoid.alpha_y > 1e-9 * ellipsoid.alpha_x;
     lobe.axis = frame.row[2];

@@ -25,6 +25,7 @@ struct FittedLobe {
   Vec3 axis = {0, 0, 1};     // normal of the tilted frame, the third axis of the ellipsoid
   double tilt = 0;           // angle between that and the surface normal, radians
   double rotation = 0;       // azimuth of the tangent whose projection across `axis` is the axis of alpha_1, radians
+  bool retro = false;        // about the back direction, which most renderers do not have
   bool anisotropic = false;  // alpha_1 and alpha_2 differ by more than 1e-9 of themselves
 };
 

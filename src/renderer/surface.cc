@@ -265,7 +265,9 @@ std::size_t StrongestLobe(const FittedBrdf& fit) {
   double largest = -1;
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
     double sum = 0;
-    for (std::size_t c = 0; c < fit.material().channels.size(); ++c) sum += fit.Fresnel(l, c, 1);
+    for (std::size_t c = 0; c < fit.material().channels.size() && !fit.lobes()[l].retro; ++c) {
+      sum += fit.Fresnel(l, c, 1);
+    }
     if (sum > largest) largest = sum, strongest = l;
   }
   return strongest;
@@ -281,7 +283,7 @@ Shares SharesOf(const FittedBrdf& fit) {
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
     const SurfaceLobe lobe = LobeOf(fit, l, 1);
     const double largest = *std::max_element(lobe.fresnel.f0.begin(), lobe.fresnel.f0.end());
-    shares.lobes.push_back(largest < kNoReflectance ? 0.0 : largest);
+    shares.lobes.push_back(largest < kNoReflectance || fit.lobes()[l].retro ? 0.0 : largest);
     sum += shares.lobes.back();
   }
   if (sum == 0) {

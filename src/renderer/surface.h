@@ -89,14 +89,14 @@ SurfaceLobe LobeOf(const FittedBrdf& fit, std::size_t lobe, double weight);
 // The index whose Fresnel term is nearest to that of the fit's lobe over `share`, all channels; the fit's own where it
 // is a conductor's and the share is 1.
 SurfaceFresnel ConductorFresnelOf(const FittedBrdf& fit, std::size_t lobe, double share);
-// The lobe with the largest reflectance.
+// The lobe with the largest reflectance, of those about the mirror direction where there is one.
 std::size_t StrongestLobe(const FittedBrdf& fit);
 // The diffuse albedo; grey three times.
 Spectrum DiffuseOf(const FittedBrdf& fit);
 
 // Shares of a random choice between the diffuse part and the lobes (pbrt's mix, Mitsuba's blendbsdf): the diffuse part
 // gets its largest albedo, the lobes share the rest by their reflectance. A share times a component is the component.
-// A lobe that reflects less than 1e-5 at normal incidence has the share 0: there is nothing to choose.
+// A lobe that reflects less than 1e-5 at normal incidence or lies about the back direction has the share 0.
 struct Shares {
   double diffuse = 0;
   std::vector<double> lobes;

@@ -11,6 +11,7 @@
 #include "lobefit/export/export.h"
 #include "lobefit/export/refit.h"
 #include "lobefit/export/targets.h"
+#include "lobefit/math/directions.h"
 
 namespace lobefit {
 namespace {
@@ -55,6 +56,31 @@ TEST(Targets, OtherDistributionsAndFresnelTermsAreNotSilent) {
   scale.model.lobes[0].fresnel = Fresnel::kNone;
   EXPECT_EQ(Fate("materialx", scale, Feature::kFresnel), "exactly");
   EXPECT_EQ(Fate("gltf", scale, Feature::kFresnel), "approximately");
+}
+
+// A lobe about the back direction is left out and named, never written as one about the mirror direction.
+TEST(Targets, LeaveOutRetroLobes) {
+  SyntheticCase retro = test::TwoLobes(), without = test::Turned();
+  retro.model.lobes[1].direction = LobeDirection::kRetro;
+  const FittedBrdf fit(test::MaterialOf(retro));
+  without = retro;
+  without.model.lobes.pop_back();
+  without.values.erase(without.values.begin() + 6, without.values.begin() + 12);
+  const FittedBrdf rest(test::MaterialOf(without));
+  for (const char* name : {"pbrt", "mitsuba", "materialx", "openpbr", "gltf"}) {
+    const Target& target = FindTarget(name);
+    EXPECT_EQ(Fate(name, retro, Feature::kSecondLobe), "not") << name;
+    EXPECT_EQ(target.refusal(fit), "") << name;
+    double a[3], b[3];
+    const Vec3 wi = FromSpherical(0.7, 0.3), wo = FromSpherical(0.6, 0.4);
+    target.evaluate(fit)(wi, wo, a);
+    target.evaluate(rest)(wi, wo, b);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c] / b[c], 1, 1e-12) << name;
+    SyntheticCase only = without;
+    only.model.lobes[0].direction = LobeDirection::kRetro;
+    EXPECT_THAT(target.refusal(FittedBrdf(test::MaterialOf(only))), HasSubstr("back direction")) << name;
+  }
+  EXPECT_EQ(Fate("glsl", retro, Feature::kSecondLobe), "exactly");
 }
 
 std::string Refusal(const SyntheticCase& synthetic, const char* target) {

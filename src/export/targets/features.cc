@@ -43,6 +43,16 @@ bool AllHave(const FittedBrdf& fit, Fresnel fresnel) {
                      [&](const FittedLobe& lobe) { return lobe.choices.fresnel == fresnel; });
 }
 
+namespace {
+
+// Left out by all renderers but those that take a table or a program.
+void MarkRetro(const FittedBrdf& fit, std::vector<Carried>* rows) {
+  if (std::none_of(fit.lobes().begin(), fit.lobes().end(), [](const FittedLobe& lobe) { return lobe.retro; })) return;
+  Mark(rows, Feature::kSecondLobe, Carries::kNot, "lobes about the back direction are left out");
+}
+
+}  // namespace
+
 std::vector<Carried> CarriesLobes(const FittedBrdf& fit, Masking masking, const std::string& own_masking) {
   std::vector<Carried> rows = AllExactly(fit, "");
   if (!fit.HasOnlyGgx()) Mark(&rows, Feature::kShape, Carries::kApproximately, "as GGX of the same widths");
@@ -57,6 +67,7 @@ std::vector<Carried> CarriesLobes(const FittedBrdf& fit, Masking masking, const 
   if (diffuse != Diffuse::kLambert && diffuse != Diffuse::kNone) {
     Mark(&rows, Feature::kDiffuse, Carries::kApproximately, "as a Lambertian part of the same albedo");
   }
+  MarkRetro(fit, &rows);
   return rows;
 }
 
@@ -75,6 +86,7 @@ std::vector<Carried> CarriesConductors(const FittedBrdf& fit, Masking masking, c
   if (std::count(shares.begin(), shares.end(), 0.0) > 0) {
     Mark(&rows, Feature::kSecondLobe, Carries::kNot, "it reflects less than 1e-5 at normal incidence");
   }
+  MarkRetro(fit, &rows);
   return rows;
 }
 
@@ -110,8 +122,8 @@ Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes, b
   Model model = fit.material().model;
   model.lobes.clear();
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
-    if (fit.lobes().size() > most_lobes && l != StrongestLobe(fit)) continue;
     const FittedLobe& lobe = fit.lobes()[l];
+    if (lobe.retro || (fit.lobes().size() > most_lobes && l != StrongestLobe(fit))) continue;
     const bool tilted = lobe.tilt > 1e-6;
     const Ndf ndf = tilted ? Ndf::kEllipsoid : lobe.anisotropic ? Ndf::kGgxAnisotropic : Ndf::kGgx;
     const bool kept = FamilyOf(lobe.choices.ndf) == NdfFamily::kGgx && tilted == IsTilted(lobe.choices.ndf) &&
@@ -126,12 +138,13 @@ Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes, b
   return model;
 }
 
+std::string RefuseOnlyRetro(const FittedBrdf& fit) {
+  const bool only = std::all_of(fit.lobes().begin(), fit.lobes().end(), [](const FittedLobe& l) { return l.retro; });
+  return only && !fit.lobes().empty() ? "it has no lobe about the back direction" : "";
+}
+
 std::string RefuseNoLobe(const FittedBrdf& fit) {
-  if (fit.lobes().empty()) return "it needs a specular lobe, and the fit has none";
-  const bool retro = std::any_of(fit.lobes().begin(), fit.lobes().end(), [](const FittedLobe& lobe) {
-    return lobe.choices.direction == LobeDirection::kRetro;
-  });
-  return retro ? "it has no lobe about the back direction" : "";
+  return fit.lobes().empty() ? "it needs a specular lobe, and the fit has none" : RefuseOnlyRetro(fit);
 }
 
 std::string RefuseUnknownTerms(const FittedBrdf& fit) {

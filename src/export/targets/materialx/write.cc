@@ -100,6 +100,7 @@ Surface MaterialXSurface(const FittedBrdf& fit) {
   surface.masking = SurfaceMasking::kMeanAlpha;
   surface.energy_compensation = true;
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
+    if (fit.lobes()[l].retro) continue;
     surface.lobes.push_back(LobeOf(fit, l, 1));
     if (fit.lobes()[l].choices.fresnel == Fresnel::kConductor) {
       surface.lobes.back().fresnel = ConductorFresnelOf(fit, l, 1);
@@ -115,6 +116,7 @@ Target MaterialXTarget() {
           .description = "MaterialX 1.39: BSDF nodes",
           .load = "reference {name}.mtlx (USD: @{name}.mtlx@), material {id}",
           .rgb_only = true,
+          .refusal = RefuseOnlyRetro,
           .carries = CarriesMaterialX,
           .own_model = HeightModel,
           .evaluate = EvaluateMaterialX,
