@@ -7,9 +7,9 @@
 namespace lobefit {
 
 const std::vector<PanelMaker>& PanelMakers() {
-  static const std::vector<PanelMaker> makers = {CurvesPanel, LobesPanel,     ParametersPanel, QualityPanel,
-                                                 SpherePanel, EnergyPanel,    MapsPanel,       NdfPanel,
-                                                 BurleyPanel, ResidualsPanel, CorrelationPanel};
+  static const std::vector<PanelMaker> makers = {
+      CurvesPanel, LobesPanel,   ParametersPanel, QualityPanel, SpherePanel,    EnergyPanel,     MapsPanel,
+      NdfPanel,    ProfilePanel, FresnelPanel,    BurleyPanel,  ResidualsPanel, CorrelationPanel};
   return makers;
 }
 

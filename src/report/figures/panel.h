@@ -42,6 +42,8 @@ std::optional<Panel> QualityPanel(const ReportData& data);
 std::optional<Panel> BurleyPanel(const ReportData& data);
 std::optional<Panel> SpherePanel(const ReportData& data);
 std::optional<Panel> NdfPanel(const ReportData& data);
+std::optional<Panel> ProfilePanel(const ReportData& data);
+std::optional<Panel> FresnelPanel(const ReportData& data);
 std::optional<Panel> ResidualsPanel(const ReportData& data);
 std::optional<Panel> EnergyPanel(const ReportData& data);
 std::optional<Panel> CorrelationPanel(const ReportData& data);

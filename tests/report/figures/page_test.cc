@@ -31,10 +31,10 @@ std::vector<std::string> IdsOf(const Material& material, const Measurement& meas
   return ids;
 }
 
-// All but that of tables of lobes.
+// All but those of tables of lobes and of profiles.
 TEST(Page, AFullTableFillsEveryPanel) {
   const Material material = test::MakeMaterial(3, true);
-  EXPECT_EQ(IdsOf(material, test::Measure(material, test::TablePairs(), 0.03, true)).size(), PanelMakers().size() - 1);
+  EXPECT_EQ(IdsOf(material, test::Measure(material, test::TablePairs(), 0.03, true)).size(), PanelMakers().size() - 2);
 }
 
 TEST(Page, AnInPlaneMeasurementHasNoMaps) {
@@ -52,6 +52,18 @@ TEST(Page, AnAnisotropicMeasurementHasMapsButNoIsotropicPictures) {
       IdsOf(material, test::Measure(material, test::GoniometerPairs(true), 0.03, false));
   EXPECT_THAT(ids, Contains("maps"));
   EXPECT_THAT(ids, Not(Contains("burley")));
+}
+
+// One more figure, beside GGX of the same widths.
+TEST(Page, AProfileIsDrawn) {
+  Material material = test::MakeMaterial(1, false);
+  const Measurement measurement = test::Measure(material, test::GoniometerPairs(false), 0.03, false);
+  EXPECT_THAT(IdsOf(material, measurement), Not(Contains("profile")));
+  EXPECT_THAT(IdsOf(material, measurement), Contains("fresnel"));
+  const FittedParameter gamma = {{3.0}, {0.1}, {0.1}, {3.0}, true, false};
+  material.model.lobes[0].ndf = Ndf::kStudentEllipsoid;
+  material.parameters.insert(material.parameters.begin() + 5, gamma);
+  EXPECT_THAT(IdsOf(material, measurement), Contains("profile"));
 }
 
 TEST(Page, OneSampleIsRefused) {
