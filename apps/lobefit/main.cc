@@ -31,6 +31,7 @@ constexpr Verb kVerbs[] = {
     {"info", "describe a measurement file", SetUpInfo},
     {"fit", "fit a reflectance model to a measurement file", SetUpFit},
     {"batch", "fit many files, here or as shards on a cluster; goes on where it was", SetUpBatch},
+    {"maps", "fit every texel of an image stack: maps of normals and reflectance with errors", SetUpMaps},
     {"compare", "fit several recipes, judge them on held-out directions, recommend one", SetUpCompare},
     {"report", "draw the report of a fitted material against its measurement again", SetUpReport},
     {"convert", "write a measurement file in another format, and say what was lost", SetUpConvert},

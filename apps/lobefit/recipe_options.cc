@@ -17,17 +17,6 @@
 namespace lobefit {
 namespace {
 
-// Beside the installed program, else in the source tree that built it.
-std::filesystem::path RecipeFolder() {
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    std::filesystem::path installed = program.parent_path().parent_path() / "share" / "lobefit" / "fits";
-    if (std::filesystem::is_directory(installed, error)) return installed;
-  }
-  return LOBEFIT_SOURCE_FITS;
-}
-
 template <class Enum>
 void Override(const std::string& text, const char* option, const std::vector<Choice<Enum>>& choices, Enum* value) {
   if (text.empty()) return;
@@ -41,6 +30,16 @@ void Override(const std::string& text, const char* option, const std::vector<Cho
 }
 
 }  // namespace
+
+std::filesystem::path RecipeFolder() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    std::filesystem::path installed = program.parent_path().parent_path() / "share" / "lobefit" / "fits";
+    if (std::filesystem::is_directory(installed, error)) return installed;
+  }
+  return LOBEFIT_SOURCE_FITS;
+}
 
 std::vector<std::string> RecipeNames() {
   std::error_code error;

@@ -1,6 +1,7 @@
 // The recipe of a fit from the command line: by name or file, or automatic, with single choices overridden.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,8 @@ class RecipeOptions {
   RecipeOverrides overrides_;
 };
 
+// Where the recipes of the library are: beside the installed program, else in the source tree that built it.
+std::filesystem::path RecipeFolder();
 // Names of the recipes of the library, sorted.
 std::vector<std::string> RecipeNames();
 

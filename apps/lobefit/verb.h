@@ -27,6 +27,7 @@ std::function<int()> SetUpConvert(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpExport(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common);
+std::function<int()> SetUpMaps(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpSynth(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpValidate(CLI::App* app, CommonOptions* common);

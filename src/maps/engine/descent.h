@@ -1,0 +1,35 @@
+// Levenberg-Marquardt for one texel: a dense problem of at most 11 unknowns, of which some are held.
+#pragma once
+
+#include "lobefit/maps/engine/objective.h"
+
+namespace lobefit {
+
+// Held and bounded unknowns of a texel.
+struct MapBounds {
+  bool normal_held = false, width_held = false;
+  double least_width = 0, most_width = 0;  // of ln alpha, ln a, ln c
+  double most_f0 = 0;                      // in the texel's unit
+  double least_normal_z = 0.02;
+};
+
+struct MapDescent {
+  MapPoint point;
+  double cost = 0;
+  bool converged = false;
+  int iterations = 0;
+};
+
+// Ends where the step that remains promises less than 1e-10 of the cost. Domain: start within the bounds.
+MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint& start, const MapBounds& bounds,
+                   double loss, TexelObjective* objective);
+
+// Whether unknown j is held, or stands at a bound against which the cost falls (gradient as of Derivatives).
+bool IsHeld(const MapModel& model, const MapPoint& point, const MapBounds& bounds, int j, double derivative);
+
+// L with L L^T = the part of `matrix` whose unknowns are not held, in place below the diagonal; rows and columns of
+// held ones become those of the identity. False where it is not positive definite.
+bool Factorise(int unknowns, const std::array<bool, kMostUnknowns>& held, MapMatrix* matrix);
+void SolveFactorised(int unknowns, const MapMatrix& factor, MapVector* x);
+
+}  // namespace lobefit

@@ -1,0 +1,151 @@
+#include "lobefit/maps/engine/objective.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lobefit {
+namespace {
+
+// Sum of ln(1 + x_l) >= 0 with one logarithm a few terms: e -> e + x + e x is the product less 1, exact near 0.
+double SumOfLog1p(const std::vector<double>& x, double factor, std::size_t padded) {
+  constexpr std::size_t kFlush = 32;
+  double sum = 0;
+  for (std::size_t begin = 0; begin < padded; begin += kFlush) {
+    double lanes[LightArrays::kLanes] = {};
+    for (std::size_t l = begin; l < std::min(padded, begin + kFlush); l += LightArrays::kLanes) {
+      for (std::size_t lane = 0; lane < LightArrays::kLanes; ++lane) {
+        const double t = factor * x[l + lane];
+        lanes[lane] += t + lanes[lane] * t;
+      }
+    }
+    for (const double lane : lanes) sum += std::log1p(lane);
+  }
+  return sum;
+}
+
+}  // namespace
+
+void TexelData::Resize(std::size_t padded) {
+  lights.Resize(padded);
+  for (std::vector<double>& v : value) v.resize(padded);
+}
+
+void TexelObjective::Resize(std::size_t padded) {
+  shape_.Resize(padded);
+  for (std::vector<double>* a : {&square_, &weight_, &bend_, &lobe_, &carried_}) a->resize(padded);
+  for (std::vector<double>& r : residual_) r.resize(padded);
+  for (std::vector<double>& r : rows_) r.resize(padded);
+  for (auto& channel : jacobian_) {
+    for (std::vector<double>& j : channel) j.resize(padded);
+  }
+}
+
+double TexelObjective::Residuals(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,
+                                 bool gradient) {
+  const LightArrays& lights = data.lights;
+  EvaluateShape(model.lobe, point, lights, gradient, &shape_);
+  const bool lobe = model.lobe != MapLobe::kNone;
+  for (std::size_t l = 0; lobe && l < lights.padded; ++l) {
+    lobe_[l] = (1 - lights.k[l]) * shape_.specular[l];
+    carried_[l] = lights.k[l] / data.scale;
+  }
+  std::fill(square_.begin(), square_.begin() + static_cast<std::ptrdiff_t>(lights.padded), 0.0);
+  for (int c = 0; c < model.channels; ++c) {
+    const double d = point.diffuse[c], f0 = point.f0[c];
+    std::vector<double>& r = residual_[c];
+    for (std::size_t l = 0; l < lights.padded; ++l) {
+      double predicted = d * shape_.cosine[l];
+      if (lobe) predicted += f0 * lobe_[l] + carried_[l] * shape_.specular[l];
+      r[l] = lights.live[l] * (predicted - data.value[c][l]);
+      square_[l] += r[l] * r[l];
+    }
+  }
+  const double cost = 0.5 * loss * loss * SumOfLog1p(square_, 1 / (loss * loss), lights.padded);
+  return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+}
+
+double TexelObjective::Cost(const MapModel& model, const TexelData& data, const MapPoint& point, double loss) {
+  return Residuals(model, data, point, loss, false);
+}
+
+double TexelObjective::Derivatives(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,
+                                   Curvature curvature, MapVector* gradient, MapMatrix* hessian) {
+  const double cost = Residuals(model, data, point, loss, true);
+  const LightArrays& lights = data.lights;
+  const std::size_t padded = lights.padded;
+  const bool lobe = model.lobe != MapLobe::kNone;
+  const int shape = model.Shape(), unknowns = model.Unknowns(), channels = model.channels;
+  constexpr double kLeast = 0.05;  // of the weight that curvature along the residual keeps where it is clipped
+  for (std::size_t l = 0; l < padded; ++l) {
+    const double w = lights.live[l] / (1 + square_[l] / (loss * loss));
+    weight_[l] = w;
+    const double whole = -2 * w * w / (loss * loss);
+    bend_[l] = curvature == Curvature::kWhole ? whole : std::max(whole, -(1 - kLeast) * w / (square_[l] + 1e-300));
+  }
+  for (int j = 0; j < shape; ++j) {
+    std::vector<double>& v = rows_[j];
+    std::fill(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(padded), 0.0);
+    for (int c = 0; c < channels; ++c) {
+      const double d = point.diffuse[c], f0 = point.f0[c];
+      std::vector<double>& J = jacobian_[c][j];
+      const std::vector<double>&r = residual_[c], &ds = shape_.dspecular[j];
+      for (std::size_t l = 0; l < padded; ++l) {
+        double value = lobe ? (f0 * (1 - lights.k[l]) + carried_[l]) * ds[l] : 0;
+        if (j < 2) value += d * shape_.dcosine[j][l];
+        J[l] = value;
+        v[l] += r[l] * value;
+      }
+    }
+  }
+  for (int c = 0; c < channels; ++c) {
+    const std::vector<double>& r = residual_[c];
+    std::vector<double>&vd = rows_[model.DiffuseAt(c)], &vf = rows_[model.F0At(c)];
+    for (std::size_t l = 0; l < padded; ++l) vd[l] = r[l] * shape_.cosine[l];
+    for (std::size_t l = 0; lobe && l < padded; ++l) vf[l] = r[l] * lobe_[l];
+  }
+  for (int j = 0; j < unknowns; ++j) {
+    const double *v = rows_[j].data(), *w = weight_.data(), *b = bend_.data();
+    (*gradient)[j] = SumOverLights(padded, [=](std::size_t l) { return w[l] * v[l]; });
+    for (int k = 0; k <= j; ++k) {
+      const double* u = rows_[k].data();
+      (*hessian)[j][k] = SumOverLights(padded, [=](std::size_t l) { return b[l] * v[l] * u[l]; });
+    }
+  }
+  const double* w = weight_.data();
+  for (int c = 0; c < channels; ++c) {
+    const double* amplitudes[2] = {shape_.cosine.data(), lobe_.data()};
+    for (int j = 0; j < shape; ++j) {
+      const double* J = jacobian_[c][j].data();
+      for (int k = 0; k <= j; ++k) {
+        const double* K = jacobian_[c][k].data();
+        (*hessian)[j][k] += SumOverLights(padded, [=](std::size_t l) { return w[l] * J[l] * K[l]; });
+      }
+      for (int a = 0; a < model.PerChannel(); ++a) {
+        const double* A = amplitudes[a];
+        (*hessian)[model.DiffuseAt(c) + a][j] +=
+            SumOverLights(padded, [=](std::size_t l) { return w[l] * J[l] * A[l]; });
+      }
+    }
+    for (int a = 0; a < model.PerChannel(); ++a) {
+      for (int b = 0; b <= a; ++b) {
+        const double *A = amplitudes[a], *B = amplitudes[b];
+        (*hessian)[model.DiffuseAt(c) + a][model.DiffuseAt(c) + b] +=
+            SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * B[l]; });
+      }
+    }
+  }
+  for (int j = 0; j < unknowns; ++j) {
+    for (int k = 0; k < j; ++k) (*hessian)[k][j] = (*hessian)[j][k];
+  }
+  return cost;
+}
+
+double TexelObjective::Jacobian(const MapModel& model, int channel, int unknown, std::size_t light) const {
+  if (unknown < model.Shape()) return jacobian_[channel][unknown][light];
+  if (unknown == model.DiffuseAt(channel)) return shape_.cosine[light];
+  if (model.lobe != MapLobe::kNone && unknown == model.F0At(channel)) return lobe_[light];
+  return 0;
+}
+
+}  // namespace lobefit

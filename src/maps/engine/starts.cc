@@ -1,0 +1,112 @@
+#include "lobefit/maps/engine/starts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lobefit {
+namespace {
+
+Vec3 AboveHorizon(const Vec3& n, double least_z) {
+  const double length = Norm(n);
+  if (!(length > 0) || !std::isfinite(length)) return {0, 0, 1};
+  const Vec3 unit = (1 / length) * n;
+  if (unit.z >= least_z) return unit;
+  const double flat = std::hypot(unit.x, unit.y), keep = std::sqrt(1 - least_z * least_z) / std::max(flat, 1e-12);
+  return {keep * unit.x, keep * unit.y, least_z};
+}
+
+// x of the symmetric system A x = b by Cramer's rule; zero where A is singular.
+Vec3 Solve3(const double A[6], const Vec3& b) {  // xx xy xz yy yz zz
+  const double c_xx = A[3] * A[5] - A[4] * A[4], c_xy = A[2] * A[4] - A[1] * A[5], c_xz = A[1] * A[4] - A[2] * A[3];
+  const double det = A[0] * c_xx + A[1] * c_xy + A[2] * c_xz;
+  const double c_yy = A[0] * A[5] - A[2] * A[2], c_yz = A[1] * A[2] - A[0] * A[4], c_zz = A[0] * A[3] - A[1] * A[1];
+  if (!(std::fabs(det) > 1e-12 * std::fabs(A[0] * A[3] * A[5]))) return {0, 0, 0};
+  return {(c_xx * b.x + c_xy * b.y + c_xz * b.z) / det, (c_xy * b.x + c_yy * b.y + c_yz * b.z) / det,
+          (c_xz * b.x + c_yz * b.y + c_zz * b.z) / det};
+}
+
+// Two amplitudes that minimise a quadratic, neither negative.
+void NonNegative(double aa, double ab, double bb, double ay, double by, double* a, double* b) {
+  const double det = aa * bb - ab * ab;
+  *a = det > 1e-12 * aa * bb ? (ay * bb - by * ab) / det : 0;
+  *b = det > 1e-12 * aa * bb ? (by * aa - ay * ab) / det : 0;
+  if (det <= 1e-12 * aa * bb || *b < 0) *b = 0, *a = aa > 0 ? std::max(0.0, ay / aa) : 0;
+  if (*a < 0) *a = 0, *b = bb > 0 ? std::max(0.0, by / bb) : 0;
+}
+
+}  // namespace
+
+MapPoint LambertStart(const MapModel& model, const TexelData& data, const std::vector<double>& mean,
+                      const MapBounds& bounds, const MapPoint& fixed) {
+  MapPoint point = fixed;
+  const LightArrays& lights = data.lights;
+  if (!bounds.normal_held) {
+    double A[6] = {};
+    Vec3 b = {0, 0, 0};
+    for (std::size_t l = 0; l < lights.count; ++l) {
+      if (mean[l] > 1) continue;
+      const Vec3 w = {lights.x[l], lights.y[l], lights.z[l]};
+      A[0] += w.x * w.x, A[1] += w.x * w.y, A[2] += w.x * w.z, A[3] += w.y * w.y, A[4] += w.y * w.z, A[5] += w.z * w.z;
+      b = b + mean[l] * w;
+    }
+    point.normal = AboveHorizon(Solve3(A, b), 0.1);
+  }
+  for (int c = 0; c < model.channels; ++c) {
+    double over = 0, under = 1e-300;
+    for (std::size_t l = 0; l < lights.count; ++l) {
+      const double cosine = point.normal.x * lights.x[l] + point.normal.y * lights.y[l] + point.normal.z * lights.z[l];
+      if (cosine <= 0 || mean[l] > 1) continue;
+      over += cosine * data.value[c][l], under += cosine * cosine;
+    }
+    point.diffuse[c] = std::max(0.0, over / under);
+    point.f0[c] = 0;
+  }
+  return point;
+}
+
+Vec3 HighlightNormal(const TexelData& data, const std::vector<double>& mean, const MapPoint& lambert,
+                     const MapBounds& bounds) {
+  const LightArrays& lights = data.lights;
+  Vec3 sum = {0, 0, 0};
+  double most = 0;
+  const auto excess = [&](std::size_t l) {
+    const Vec3& n = lambert.normal;
+    const double cosine = std::max(0.0, n.x * lights.x[l] + n.y * lights.y[l] + n.z * lights.z[l]);
+    return mean[l] - cosine * lambert.diffuse[0];
+  };
+  for (std::size_t l = 0; l < lights.count; ++l) most = std::max(most, excess(l));
+  for (std::size_t l = 0; l < lights.count; ++l) {
+    const double e = excess(l);
+    if (e < 0.5 * most) continue;
+    const double weight = e * e / std::sqrt(lights.square[l]);
+    sum = sum + Vec3{weight * lights.h_x[l], weight * lights.h_y[l], weight * lights.h_z[l]};
+  }
+  return AboveHorizon(sum, std::max(0.1, bounds.least_normal_z));
+}
+
+double SolveAmplitudes(const MapModel& model, const TexelData& data, double loss, MapPoint* point,
+                       TexelObjective* objective, ShapeArrays* shape) {
+  const LightArrays& lights = data.lights;
+  EvaluateShape(model.lobe, *point, lights, false, shape);
+  std::vector<double>& S = shape->specular;
+  for (int round = 0; round < 2; ++round) {
+    for (int c = 0; c < model.channels; ++c) {
+      double aa = 0, ab = 0, bb = 0, ay = 0, by = 0;
+      for (std::size_t l = 0; l < lights.count; ++l) {
+        const double s = (1 - lights.k[l]) * S[l], cosine = shape->cosine[l];
+        // Without what Schlick's term adds whatever f0 is.
+        const double y = data.value[c][l] - lights.k[l] / data.scale * S[l];
+        double w = 1;
+        if (round > 0) {
+          const double r = point->diffuse[c] * cosine + point->f0[c] * s - y;
+          w = 1 / (1 + r * r / (loss * loss));
+        }
+        aa += w * cosine * cosine, ab += w * cosine * s, bb += w * s * s, ay += w * cosine * y, by += w * s * y;
+      }
+      NonNegative(aa, ab, bb, ay, by, &point->diffuse[c], &point->f0[c]);
+    }
+  }
+  return objective->Cost(model, data, *point, loss);
+}
+
+}  // namespace lobefit

@@ -1,0 +1,39 @@
+// The maps: which there are, in which part of the file, and how a texel fills them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lobefit/maps/engine/texel.h"
+
+namespace lobefit {
+
+enum class MapPart { kParameters, kErrors, kQuality };
+enum class MapType { kFloat, kHalf, kCount };  // kCount: unsigned integers
+
+struct MapPlane {
+  MapPart part;
+  std::string name;  // channel of the EXR part
+  MapType type;
+};
+
+const char* PartName(MapPart part);
+
+// In the order of Fill. Parameters: normal.x .y .z, diffuse.C, f0.C, alpha (or alpha_x, alpha_y, angle_deg), C of R, G,
+// B, or Y alone. Errors, standard: the same names, of alphas the error of the logarithm as ln_alpha, and normal.angle_deg.
+// Quality: rms (units of scale), scale, used (lights), status (MapStatus).
+std::vector<MapPlane> PlanesFor(MapLobe lobe, int channels);
+
+// values[plane]; what PlanesFor names. NaN for what is not there or not determined.
+void Fill(const TexelFit& fit, MapLobe lobe, int channels, float* values);
+
+// Of the name in the part; the number of planes where there is none.
+std::size_t PlaneIndex(const std::vector<MapPlane>& planes, MapPart part, const std::string& name);
+
+// A rectangle of maps: values[plane][row width + column].
+struct MapRows {
+  std::size_t first_row = 0, rows = 0, width = 0;
+  std::vector<std::vector<float>> values;
+};
+
+}  // namespace lobefit

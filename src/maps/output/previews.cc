@@ -1,0 +1,125 @@
+#include "lobefit/maps/output/previews.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <png.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+
+namespace lobefit {
+namespace {
+
+[[noreturn]] void OnPixelError(png_structp, png_const_charp message) {
+  throw OutputError(std::string("PNG: ") + message);
+}
+void OnPixelWarning(png_structp, png_const_charp) {}
+void OnPixelWrite(png_structp png, png_bytep data, png_size_t length) {
+  static_cast<std::string*>(png_get_io_ptr(png))
+      ->append(static_cast<const char*>(static_cast<const void*>(data)), length);
+}
+void OnPixelFlush(png_structp) {}
+
+double Srgb(double linear) {
+  const double v = std::clamp(linear, 0.0, 1.0);
+  return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+}
+
+// 99th percentile of what is finite; 1 where nothing is.
+double White(const Maps& maps) {
+  std::vector<float> values;
+  for (const std::vector<float>& plane : maps.rows.values) {
+    std::copy_if(plane.begin(), plane.end(), std::back_inserter(values), [](float v) { return std::isfinite(v); });
+  }
+  if (values.empty()) return 1;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * 99 / 100);
+  std::nth_element(values.begin(), at, values.end());
+  return *at > 0 ? static_cast<double>(*at) : 1;
+}
+
+// The planes of `part` whose names begin with `head`.
+Maps Chosen(const std::filesystem::path& path, MapPart part, const std::string& head) {
+  return ReadMapsExr(path, [&](const MapPlane& plane) { return plane.part == part && plane.name.rfind(head, 0) == 0; });
+}
+
+// Its planes as pixels of `bits`; `curve` maps a value of channel c to 0..1.
+template <class Curve>
+std::string Picture(const Maps& maps, int bits, const Curve& curve) {
+  std::vector<const std::vector<float>*> planes;
+  for (const std::vector<float>& plane : maps.rows.values) {
+    if (!plane.empty()) planes.push_back(&plane);
+  }
+  const std::size_t texels = maps.rows.rows * maps.rows.width;
+  std::vector<std::uint16_t> pixels;
+  pixels.reserve(texels * planes.size());
+  for (std::size_t t = 0; t < texels; ++t) {
+    for (std::size_t c = 0; c < planes.size(); ++c) {
+      const double v = std::clamp(curve(static_cast<double>((*planes[c])[t]), c), 0.0, 1.0);
+      pixels.push_back(static_cast<std::uint16_t>(std::lround(v * ((1 << bits) - 1))));
+    }
+  }
+  return EncodePixels(pixels, maps.rows.width, maps.rows.rows, static_cast<int>(planes.size()), bits);
+}
+
+}  // namespace
+
+std::string EncodePixels(const std::vector<std::uint16_t>& pixels, std::size_t width, std::size_t height, int channels,
+                         int bits) {
+  std::string bytes;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, OnPixelError, OnPixelWarning);
+  png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
+  if (info == nullptr) throw OutputError("PNG: out of memory");
+  png_set_write_fn(png, &bytes, OnPixelWrite, OnPixelFlush);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bits,
+               channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  const std::size_t count = width * static_cast<std::size_t>(channels);
+  std::vector<png_byte> row(count * (bits > 8 ? 2 : 1));
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const unsigned v = pixels[y * count + i];
+      if (bits > 8) {
+        row[2 * i] = static_cast<png_byte>(v >> 8U), row[2 * i + 1] = static_cast<png_byte>(v & 255U);
+      } else {
+        row[i] = static_cast<png_byte>(v);
+      }
+    }
+    png_write_row(png, row.data());
+  }
+  png_write_end(png, nullptr);
+  png_destroy_write_struct(&png, &info);
+  return bytes;
+}
+
+std::vector<std::filesystem::path> WritePreviews(const std::filesystem::path& maps, bool calibrated, NormalY normal_y,
+                                                 const std::filesystem::path& stem) {
+  std::vector<std::filesystem::path> written;
+  const auto write = [&](const char* kind, const std::string& bytes) {
+    written.push_back(stem.string() + "." + kind + ".png");
+    WriteFileAtomically(written.back(), bytes);
+  };
+  const Maps normals = Chosen(maps, MapPart::kParameters, "normal.");
+  write("normal", Picture(normals, 16, [&](double v, std::size_t axis) {
+          if (std::isnan(v)) return axis == 2 ? 1.0 : 0.5;
+          return ((axis == 1 && normal_y == NormalY::kDown ? -v : v) + 1) / 2;
+        }));
+  for (const char* kind : {"diffuse", "f0"}) {
+    if (normals.lobe == MapLobe::kNone && std::string(kind) == "f0") continue;
+    const Maps colors = Chosen(maps, MapPart::kParameters, std::string(kind) + ".");
+    const double white = calibrated ? 1 : White(colors);
+    write(kind, Picture(colors, 8, [&](double v, std::size_t) { return std::isnan(v) ? 0 : Srgb(v / white); }));
+  }
+  if (normals.lobe != MapLobe::kNone) {
+    const char* name = normals.lobe == MapLobe::kGgx ? "alpha" : "alpha_x";
+    write("alpha", Picture(Chosen(maps, MapPart::kParameters, name), 8,
+                           [](double v, std::size_t) { return std::isnan(v) ? 0 : v; }));
+  }
+  write("normal_error", Picture(Chosen(maps, MapPart::kErrors, "normal.angle_deg"), 8,
+                                [](double v, std::size_t) { return std::isnan(v) ? 1 : v / 10; }));
+  return written;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,36 @@
+// The layouts that OpenStack knows: each fills images, lights and what else its files say; sizes, mask and response are
+// checked by OpenStack.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lobefit/maps/stack/stack.h"
+
+namespace lobefit {
+
+// What a layout says; `mask`: a file, or empty.
+struct StackFiles {
+  Stack stack;
+  std::filesystem::path mask;
+};
+
+// filenames.txt, light_directions.txt, light_intensities.txt and mask.png in one folder, 16-bit linear images [Shi et
+// al. 2016, DiLiGenT]. Directions may also stand as three rows of numbers.
+StackFiles ReadDiligent(const std::filesystem::path& folder);
+
+// "N", then N lines "FILE x y z"; names may hold blanks, and are looked for beside the light file.
+StackFiles ReadLightFile(const std::filesystem::path& file);
+
+// stack.toml, README.md of this folder.
+StackFiles ReadManifest(const std::filesystem::path& file);
+
+// Rows of numbers, one a line, blank lines and lines that begin with # skipped; all with `columns` numbers, or, where
+// `columns` rows of another length are found, transposed. Throws InputError with the line.
+std::vector<std::vector<double>> ReadTable(const std::filesystem::path& file, std::size_t columns);
+
+// Unit vector of a direction in a file. Throws InputError where it is not finite or shorter than 1e-4.
+Vec3 LightDirection(double x, double y, double z, const std::string& place);
+
+}  // namespace lobefit

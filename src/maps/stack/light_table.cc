@@ -1,0 +1,59 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/printable.h"
+#include "lobefit/base/text.h"
+#include "lobefit/maps/stack/layouts.h"
+
+namespace lobefit {
+
+std::vector<std::vector<double>> ReadTable(const std::filesystem::path& file, std::size_t columns) {
+  const FileBytes bytes(file);
+  LineReader lines(bytes.bytes());
+  std::vector<std::vector<double>> rows;
+  for (std::string_view line; lines.Next(&line);) {
+    const std::string_view text = Trim(line);
+    if (text.empty() || text.front() == '#') continue;
+    std::vector<double> row;
+    for (const std::string_view field : SplitBlanks(text)) {
+      const std::optional<double> number = ParseDouble(field);
+      if (!number || !std::isfinite(*number)) {
+        throw InputError(fmt::format("{}:{}: '{}' is no finite number; {} numbers a line are expected",
+                                     PrintableName(file), lines.line_number(), Excerpt(field), columns));
+      }
+      row.push_back(*number);
+    }
+    if (!rows.empty() && row.size() != rows.front().size()) {
+      throw InputError(fmt::format("{}:{}: {} numbers, but {} in the lines before", PrintableName(file),
+                                   lines.line_number(), row.size(), rows.front().size()));
+    }
+    rows.push_back(std::move(row));
+  }
+  if (rows.size() == columns && rows.front().size() != columns) {
+    std::vector<std::vector<double>> turned(rows.front().size(), std::vector<double>(columns));
+    for (std::size_t i = 0; i < turned.size(); ++i) {
+      for (std::size_t j = 0; j < columns; ++j) turned[i][j] = rows[j][i];
+    }
+    return turned;
+  }
+  if (!rows.empty() && rows.front().size() != columns) {
+    throw InputError(
+        fmt::format("{}: {} numbers a line; {} are expected", PrintableName(file), rows.front().size(), columns));
+  }
+  return rows;
+}
+
+Vec3 LightDirection(double x, double y, double z, const std::string& place) {
+  const Vec3 w = {x, y, z};
+  const double length = Norm(w);
+  if (!std::isfinite(length) || length < 1e-4) {
+    throw InputError(
+        fmt::format("{}: ({}, {}, {}) is no direction; x right, y up, z to the camera are expected", place, x, y, z));
+  }
+  return (1 / length) * w;
+}
+
+}  // namespace lobefit

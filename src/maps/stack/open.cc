@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/printable.h"
+#include "lobefit/maps/stack/image_rows.h"
+#include "lobefit/maps/stack/layouts.h"
+#include "lobefit/maps/stack/stack.h"
+
+namespace lobefit {
+namespace {
+
+using Path = std::filesystem::path;
+
+constexpr std::size_t kFewestLights = 4, kMostLights = 4096;
+
+StackFiles ReadLayout(const Path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) throw InputError(PrintableName(path) + ": is not there");
+  if (!std::filesystem::is_directory(path, error)) {
+    return path.extension() == ".toml" ? ReadManifest(path) : ReadLightFile(path);
+  }
+  if (std::filesystem::exists(path / "stack.toml", error)) return ReadManifest(path / "stack.toml");
+  if (std::filesystem::exists(path / "filenames.txt", error)) return ReadDiligent(path);
+  std::vector<Path> light_files;
+  for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
+    if (entry.path().extension() == ".lp") light_files.push_back(entry.path());
+  }
+  if (light_files.size() == 1) return ReadLightFile(light_files[0]);
+  if (light_files.size() > 1) {
+    throw InputError(fmt::format("{}: {} light files (.lp) are in this folder; name the one that is meant",
+                                 PrintableName(path), light_files.size()));
+  }
+  throw InputError(PrintableName(path) +
+                   ": no image stack: a stack.toml, DiLiGenT's filenames.txt or a light file (.lp) is looked for in "
+                   "the folder");
+}
+
+void ReadMask(const Path& file, Stack* stack) {
+  const std::unique_ptr<ImageRows> rows = OpenImage(file);
+  if (rows->width() != stack->width || rows->height() != stack->height) {
+    throw InputError(fmt::format("{}: the mask is {} x {} pixels, the images are {} x {}; they must agree",
+                                 PrintableName(file), rows->width(), rows->height(), stack->width, stack->height));
+  }
+  std::vector<float> row(rows->width() * rows->channels());
+  stack->mask.reserve(stack->width * stack->height);
+  for (std::size_t y = 0; y < stack->height; ++y) {
+    rows->Next(row.data());
+    for (std::size_t x = 0; x < stack->width; ++x) stack->mask.push_back(row[x * rows->channels()] > 0.5F ? 1 : 0);
+  }
+  if (stack->Texels() == 0) throw InputError(PrintableName(file) + ": the mask leaves no texel");
+}
+
+void CheckImages(const StackOptions& options, Stack* stack) {
+  int bits = 0;
+  for (const Path& path : stack->images) {
+    const std::unique_ptr<ImageRows> image = OpenImage(path);
+    if (stack->width == 0) {
+      stack->width = image->width(), stack->height = image->height(), stack->channels = image->channels();
+      bits = image->bits();
+    }
+    if (image->width() != stack->width || image->height() != stack->height || image->channels() != stack->channels) {
+      throw InputError(fmt::format("{}: {} x {} pixels, {} channels, but {} has {} x {} and {}; all must agree",
+                                   PrintableName(path), image->width(), image->height(), image->channels(),
+                                   PrintableName(stack->images[0]), stack->width, stack->height, stack->channels));
+    }
+    bits = std::min(bits, image->bits());
+  }
+  if (!options.encoding.empty()) ReadEncoding(options.encoding, "--encoding", &stack->response);
+  if (stack->response.curve != Response::Curve::kUnknown) return;
+  if (bits <= 8) {
+    throw InputError(fmt::format(
+        "{}: {} bits a channel, whose encoding is not said; say --encoding srgb (as cameras write), linear or gamma:G, "
+        "or `encoding` in a stack.toml",
+        PrintableName(stack->images[0]), bits));
+  }
+  stack->response.curve = Response::Curve::kLinear;
+  stack->remarks.emplace_back(
+      fmt::format("{} bits a channel are taken as linear; say --encoding where they are not", bits));
+}
+
+void CheckLights(const Stack& stack) {
+  const std::size_t count = stack.images.size();
+  if (count != stack.lights.size()) {
+    throw InputError(fmt::format("{}: {} images, but {} lights; one light an image is expected",
+                                 PrintableName(stack.path), count, stack.lights.size()));
+  }
+  if (count < kFewestLights || count > kMostLights) {
+    throw InputError(fmt::format("{}: {} images; {} to {} are expected", PrintableName(stack.path), count,
+                                 kFewestLights, kMostLights));
+  }
+  std::size_t below = 0;
+  for (const StackLight& light : stack.lights) below += light.direction.z <= 0 ? 1 : 0;
+  if (2 * below > count) {
+    throw InputError(fmt::format(
+        "{}: {} of {} lights are behind the surface (z <= 0); z must point to the camera: change the sign of z",
+        PrintableName(stack.path), below, count));
+  }
+}
+
+}  // namespace
+
+std::size_t Stack::Texels() const {
+  if (mask.empty()) return width * height;
+  return static_cast<std::size_t>(std::count_if(mask.begin(), mask.end(), [](std::uint8_t m) { return m != 0; }));
+}
+
+Stack OpenStack(const std::filesystem::path& path, const StackOptions& options) {
+  StackFiles files = ReadLayout(path);
+  Stack& stack = files.stack;
+  stack.path = path;
+  CheckLights(stack);
+  CheckImages(options, &stack);
+  if (!files.mask.empty()) ReadMask(files.mask, &stack);
+  std::size_t below = 0;
+  for (const StackLight& light : stack.lights) below += light.direction.z <= 0 ? 1 : 0;
+  if (below > 0) stack.remarks.emplace_back(fmt::format("{} lights are behind a surface that faces the camera", below));
+  return std::move(files.stack);
+}
+
+std::string DigestOf(const Stack& stack) {
+  std::string all =
+      fmt::format("{} {} {} {} {} {} {};", stack.width, stack.height, stack.channels, EncodingWord(stack.response),
+                  stack.response.black, stack.response.saturation, stack.calibrated);
+  for (const StackLight& light : stack.lights) {
+    all += fmt::format("{} {} {} {} {} {};", light.direction.x, light.direction.y, light.direction.z,
+                       light.intensity[0], light.intensity[1], light.intensity[2]);
+  }
+  all.append(stack.mask.begin(), stack.mask.end());
+  for (const std::filesystem::path& image : stack.images) all += Sha256(FileBytes(image).bytes());
+  return Sha256Hex(all);
+}
+
+}  // namespace lobefit

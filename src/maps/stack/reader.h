@@ -1,0 +1,38 @@
+// The values of a stack, a band of rows at a time.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "lobefit/maps/stack/image_rows.h"
+#include "lobefit/maps/stack/stack.h"
+
+namespace lobefit {
+
+// values[((row width + column) channels + channel) lights + light]: f_r cos_theta_i (stack.h); NaN where a pixel is no
+// number, infinite where it is saturated.
+struct StackBand {
+  std::size_t first_row = 0, rows = 0;
+  std::vector<float> values;
+};
+
+// Decodes all images together, from the top; memory: one row and the decoder's state an image. One file an image is
+// open.
+class StackReader {
+ public:
+  // Raises this process' limit of open files as far as it may. Throws InputError.
+  explicit StackReader(const Stack& stack);
+  std::size_t next_row() const { return next_row_; }
+  // The rows up to `first_row` are decoded and dropped. Domain: first_row >= next_row(), within the picture. Throws
+  // InputError.
+  StackBand Read(std::size_t first_row, std::size_t rows);
+
+ private:
+  const Stack& stack_;
+  std::vector<std::unique_ptr<ImageRows>> images_;
+  std::vector<float> row_, table_;  // one row; linear values of 16-bit codes, empty for floating point
+  std::size_t next_row_ = 0;
+};
+
+}  // namespace lobefit
