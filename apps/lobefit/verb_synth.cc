@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "output.h"
+#include "stack_synthesis.h"
 #include "synthesis_options.h"
 #include "verb.h"
 #include <fmt/format.h>
@@ -19,9 +20,11 @@ struct SynthVerb {
   SynthesisOptions synthesis;
   std::string source, out;
   int digits = 17;
+  StackSynthesisOptions stack;
 };
 
 int RunSynth(const SynthVerb& verb, const CommonOptions& common) {
+  if (verb.stack.wanted()) return verb.stack.Write(verb.source, verb.synthesis, verb.out);
   CheckOutput(verb.out, {verb.source, verb.synthesis.Layout().name});
   const WriteFormat& format = FindWriteFormat(std::nullopt, verb.out == "-" ? "-.csv" : verb.out);
   const Truth truth = verb.synthesis.LoadTruth(verb.source);
@@ -54,7 +57,8 @@ int RunSynth(const SynthVerb& verb, const CommonOptions& common) {
 std::function<int()> SetUpSynth(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<SynthVerb>();
   app->add_option("SOURCE", verb->source,
-                  "a *.material.json, or a recipe (.toml or name) whose parameters have starts or fixed values")
+                  "a *.material.json, or a recipe (.toml or name) whose parameters have starts or fixed values; with "
+                  "--stack, a *.maps.exr, or hills or brushed-hills, which are made up")
       ->required();
   app->add_option("--out", verb->out,
                   "the file to write; its ending names the format (.csv, .alta, .txt, .binary, .bsdf, ...); - writes "
@@ -63,6 +67,7 @@ std::function<int()> SetUpSynth(CLI::App* app, CommonOptions* common) {
   app->add_option("--digits", verb->digits, "significant digits of the numbers (default 17: nothing is lost)")
       ->check(CLI::Range(4, 17));
   verb->synthesis.AddTo(app);
+  verb->stack.AddTo(app);
   return [=] { return RunSynth(*verb, *common); };
 }
 
