@@ -1,0 +1,268 @@
+// One fit a texel, measured: normals of a benchmark object or of shaded hills against their truth, and texels a second
+// against FitMany and ceres::Solve with AutoDiff, as ratios of one run.
+//   bench_maps normals STACK TRUTH [--loss X] [--shadow X] [--share] [--threads N]   TRUTH: CSV column,row,n_x,n_y,n_z
+//   bench_maps hills      hills with cast shadows, for settings of loss and shadow
+//   bench_maps speed [--quick]
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <ceres/ceres.h>
+
+#include "lobefit/base/csv_fields.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/text.h"
+#include "lobefit/base/threads.h"
+#include "lobefit/fit/fit_many.h"
+#include "lobefit/maps/bands.h"
+#include "lobefit/maps/shared_width.h"
+#include "lobefit/maps/synthetic/hills.h"
+#include "lobefit/maps/synthetic/write_stack.h"
+#include "lobefit/synthesis/random.h"
+
+namespace lobefit {
+namespace {
+
+double Seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double Angle(const Vec3& a, const Vec3& b) { return std::atan2(Norm(Cross(a, b)), Dot(a, b)) * 180 / kPi; }
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+// Normals of the maps of a stack against the truth; the surest shares by the angle error that the fit states.
+int Normals(int argc, char** argv) {
+  const Stack stack = OpenStack(argv[2], {});
+  MapRecipe recipe;
+  int threads = HardwareThreads();
+  for (int i = 4; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--share") recipe.share_alpha = true;
+    if (word == "--loss") recipe.rules.loss = std::atof(argv[++i]);
+    if (word == "--shadow") recipe.rules.shadow = std::atof(argv[++i]);
+    if (word == "--always") recipe.rules.choice = LobeChoice::kAlways;
+    if (word == "--lambert") recipe.rules.lobe = MapLobe::kNone;
+    if (word == "--threads") threads = std::atoi(argv[++i]);
+  }
+  recipe.rules.schlick = stack.calibrated;
+  std::vector<Vec3> truth(stack.width * stack.height, {0, 0, 0});
+  const FileBytes file(argv[3]);
+  LineReader lines(file.bytes());
+  std::string_view line;
+  lines.Next(&line);
+  while (lines.Next(&line)) {
+    const std::vector<std::string_view> f = Split(line, ',');
+    if (f.size() != 5) continue;
+    const auto at = static_cast<std::size_t>(*ParseInteger(f[1])) * stack.width + static_cast<std::size_t>(*ParseInteger(f[0]));
+    truth[at] = {*ParseDouble(f[2]), *ParseDouble(f[3]), *ParseDouble(f[4])};
+  }
+  const FittedLights lights = LightsWithout(stack, {});
+  const double start = Seconds();
+  SharedWidth shared;
+  if (recipe.share_alpha) shared = EstimateSharedWidth(stack, recipe, lights, threads);
+  std::vector<MapRows> bands;
+  std::mutex mutex;
+  FitBands(stack, recipe, lights, shared.log_alpha, {{0, stack.height}}, threads, [&](const MapRows& band) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    bands.push_back(band);
+  });
+  const double seconds = Seconds() - start;
+  const std::vector<MapPlane> planes = PlanesFor(recipe.rules.lobe, static_cast<int>(stack.channels));
+  const std::size_t error_at = PlaneIndex(planes, MapPart::kErrors, "normal.angle_deg");
+  std::vector<std::pair<double, double>> texels;  // stated error, true error
+  std::size_t undetermined = 0;
+  for (const MapRows& band : bands) {
+    for (std::size_t t = 0; t < band.rows * band.width; ++t) {
+      const Vec3& n = truth[band.first_row * band.width + t];
+      if (!(Norm(n) > 0.5)) continue;
+      const Vec3 found = {band.values[0][t], band.values[1][t], band.values[2][t]};
+      if (std::isnan(found.z)) {
+        ++undetermined;
+        continue;
+      }
+      texels.emplace_back(band.values[error_at][t], Angle(found, n));
+    }
+  }
+  std::sort(texels.begin(), texels.end());
+  std::printf("texels %zu, not determined %zu, %.1f s\n", texels.size(), undetermined, seconds);
+  if (recipe.share_alpha) std::printf("shared alpha %.4f\n", std::exp(shared.log_alpha));
+  for (const int percent : {100, 90, 75, 50}) {
+    const std::size_t count = texels.size() * static_cast<std::size_t>(percent) / 100;
+    std::vector<double> errors, stated;
+    for (std::size_t i = 0; i < count; ++i) errors.push_back(texels[i].second), stated.push_back(texels[i].first);
+    std::vector<double> sorted = errors;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count / 2), sorted.end());
+    std::printf("surest %3d %%: mean error %.3f deg, median %.3f; median stated %.3f\n", percent, Mean(errors),
+                sorted[count / 2], stated[count / 2]);
+  }
+  return 0;
+}
+
+// Mean error of the normals of hills, with and without cast shadows.
+int ShadedHills() {
+  const std::size_t size = 64;
+  const std::vector<Vec3> lights = DomeLights(96, 65 * kPi / 180);
+  std::printf("%8s %8s %10s %10s %10s %10s\n", "loss", "shadow", "clean", "shaded", "no lobe", "determined");
+  const Hills hills = MakeHills(size, MapLobe::kGgx, 1.6);
+  for (const double loss : {0.025, 0.05, 0.1, 0.2}) {
+    for (const double shadow : {0.0, 0.05, 0.1, 0.2}) {
+      MapRules rules;
+      rules.loss = loss, rules.shadow = shadow, rules.schlick = true;
+      double mean[2];
+      std::size_t no_lobe = 0, determined = 0;
+      for (const bool shaded : {false, true}) {
+        TexelFitter fitter(rules, lights, 3);
+        Relighting relighting(hills.maps, lights, true, {});
+        std::vector<double> errors, exact(3 * lights.size());
+        std::vector<float> values(exact.size());
+        for (std::size_t t = 0; t < size * size; t += 3) {
+          relighting.Texel(t, exact.data(), lights.size());
+          RandomNumbers random(StreamSeed(1, t));
+          for (std::size_t i = 0; i < exact.size(); ++i) {
+            const std::size_t l = i % lights.size();
+            // What stands in the shadow still sees other slopes: a tenth of the light.
+            const double lit = shaded && InCastShadow(hills, t, lights[l]) ? 0.02 : 1;
+            values[i] = static_cast<float>(exact[i] * lit * (1 + 0.02 * random.Normal()) + 0.001 * random.Normal());
+          }
+          const TexelFit fit = fitter.Fit(values.data(), lights.size(), kNan);
+          const Vec3 truth = {hills.maps.rows.values[0][t], hills.maps.rows.values[1][t], hills.maps.rows.values[2][t]};
+          if (!std::isnan(fit.normal.z)) errors.push_back(Angle(fit.normal, truth));
+          if (shaded) no_lobe += (fit.status & kMapNoLobe) != 0 ? 1 : 0, determined += std::isnan(fit.alpha_x) ? 0 : 1;
+        }
+        mean[shaded ? 1 : 0] = Mean(errors);
+      }
+      std::printf("%8.3f %8.3f %10.4f %10.4f %10zu %10zu\n", loss, shadow, mean[0], mean[1], no_lobe, determined);
+    }
+  }
+  return 0;
+}
+
+// The model of engine/model.h as a residual for Jets: unknowns two slopes of the normal, ln alpha, diffuse and f0.
+struct TexelResidual {
+  Vec3 wi;
+  double value[3], scale, loss;
+  template <class T>
+  bool operator()(const T* u, T* residual) const {
+    const Vec3T<T> n = Normalized(Vec3T<T>{-u[0], -u[1], T(1.0)});
+    const Vec3T<T> h = {T(wi.x), T(wi.y), T(wi.z + 1)};
+    const T ci = n.x * wi.x + n.y * wi.y + n.z * wi.z, co = n.z, alpha = exp(u[2]), a2 = alpha * alpha;
+    const T hz = Dot(n, h), square = Dot(h, h);
+    const T K = hz * hz + (square - hz * hz) / a2;
+    const T si = sqrt(ci * ci + a2 * (1.0 - ci * ci)), so = sqrt(co * co + a2 * (1.0 - co * co));
+    const T specular = ci > T(0.0) ? square * square * ci * kInvPi / (a2 * K * K * (ci + si) * (co + so)) : T(0.0);
+    const T cosine = ci > T(0.0) ? ci : T(0.0);
+    const double k = std::pow(1 - 0.5 * std::sqrt(Dot(wi + Vec3{0, 0, 1}, wi + Vec3{0, 0, 1})), 5);
+    for (int c = 0; c < 3; ++c) {
+      const T f = u[4 + 2 * c] * (1.0 - k) + k / scale;
+      residual[c] = u[3 + 2 * c] * cosine + f * specular - value[c];
+    }
+    return true;
+  }
+};
+
+int Speed(bool quick) {
+  const std::size_t texels = quick ? 60 : 1500;
+  const Hills hills = MakeHills(64, MapLobe::kGgx, 0.6);
+  const std::vector<Vec3> lights = DomeLights(96, 60 * kPi / 180);
+  MapRules rules;
+  rules.schlick = true, rules.choice = LobeChoice::kAlways;
+  TexelFitter fitter(rules, lights, 3);
+  Relighting relighting(hills.maps, lights, true, {});
+  std::vector<std::vector<float>> values;
+  std::vector<double> exact(3 * lights.size());
+  std::vector<Samples> samples;
+  for (std::size_t k = 0; k < texels; ++k) {
+    const std::size_t t = (k * 2 + 5) % 4096;
+    relighting.Texel(t, exact.data(), lights.size());
+    RandomNumbers random(StreamSeed(1, t));
+    std::vector<float> v;
+    for (const double e : exact) v.push_back(static_cast<float>(e * (1 + 0.02 * random.Normal())));
+    Samples s;
+    s.values.resize(3);
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+      s.wi_x.push_back(lights[l].x), s.wi_y.push_back(lights[l].y), s.wi_z.push_back(lights[l].z);
+      s.wo_x.push_back(0), s.wo_y.push_back(0), s.wo_z.push_back(1);
+      for (std::size_t c = 0; c < 3; ++c)
+        s.values[c].push_back(std::max(1e-6, static_cast<double>(v[c * lights.size() + l]) / lights[l].z));
+    }
+    values.push_back(v);
+    samples.push_back(s);
+  }
+  double start = Seconds();
+  std::vector<TexelFit> fits;
+  std::vector<MapPoint> points(texels);
+  for (std::size_t k = 0; k < texels; ++k) fits.push_back(fitter.Fit(values[k].data(), lights.size(), kNan, &points[k]));
+  const double ours = (Seconds() - start) / static_cast<double>(texels);
+  double iterations = 0;
+  for (const TexelFit& fit : fits) iterations += fit.iterations;
+  std::printf("this engine           %8.1f us a texel, errors included; %.1f steps\n", 1e6 * ours,
+              iterations / static_cast<double>(texels));
+
+  Model model;
+  model.lobes = {Lobe{}};
+  const Recipe recipe = DefaultRecipe(model, "bench");
+  std::vector<const Samples*> pointers;
+  for (const Samples& s : samples) pointers.push_back(&s);
+  start = Seconds();
+  const std::vector<SmallFit> many = FitMany(recipe, pointers, {});
+  const double theirs = (Seconds() - start) / static_cast<double>(texels);
+  std::printf("FitMany (ellipsoid)   %8.1f us a texel, ratio %.2f\n", 1e6 * theirs, theirs / ours);
+
+  const std::size_t few = std::min<std::size_t>(texels, 300);
+  start = Seconds();
+  double ceres_cost = 0, our_cost = 0;
+  std::size_t as_low = 0;
+  for (std::size_t k = 0; k < few; ++k) {
+    const double scale = fits[k].scale;
+    double u[9] = {-points[k].normal.x / points[k].normal.z, -points[k].normal.y / points[k].normal.z, std::log(0.2)};
+    for (int c = 0; c < 3; ++c) u[3 + 2 * c] = 0.5, u[4 + 2 * c] = 0.3;
+    ceres::Problem problem;
+    std::vector<double> mean(lights.size());
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+      auto* residual = new TexelResidual;
+      residual->wi = lights[l], residual->scale = scale, residual->loss = rules.loss;
+      double sum = 0;
+      for (std::size_t c = 0; c < 3; ++c) sum += residual->value[c] = static_cast<double>(values[k][c * lights.size() + l]) / scale;
+      if (sum / 3 < rules.shadow) {
+        delete residual;
+        continue;
+      }
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<TexelResidual, 3, 9>(residual),
+                               new ceres::CauchyLoss(rules.loss), u);
+    }
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_QR;
+    options.logging_type = ceres::SILENT;
+    options.function_tolerance = 1e-10;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    ceres_cost += summary.final_cost, our_cost += fits[k].cost;
+    as_low += fits[k].cost <= summary.final_cost * (1 + 1e-6) ? 1 : 0;
+  }
+  const double autodiff = (Seconds() - start) / static_cast<double>(few);
+  std::printf("ceres::Solve AutoDiff %8.1f us a texel, ratio %.2f; cost as low or lower here in %zu of %zu\n",
+              1e6 * autodiff, autodiff / ours, as_low, few);
+  return 0;
+}
+
+}  // namespace
+}  // namespace lobefit
+
+int main(int argc, char** argv) {
+  const std::string what = argc > 1 ? argv[1] : "";
+  if (what == "normals" && argc >= 4) return lobefit::Normals(argc, argv);
+  if (what == "hills") return lobefit::ShadedHills();
+  if (what == "speed") return lobefit::Speed(argc > 2 && std::strcmp(argv[2], "--quick") == 0);
+  std::fprintf(stderr, "bench_maps normals STACK TRUTH.csv | hills | speed [--quick]\n");
+  return 2;
+}
