@@ -25,11 +25,14 @@ void StackSynthesisOptions::AddTo(CLI::App* app) {
   const char* what = "Image stack";
   app->add_flag("--stack", wanted_, "write an image stack with its truth into the folder --out")->group(what);
   app->add_option("--lights", lights_, "number of lights of a dome, or a light file (.lp) (default 96)")->group(what);
-  app->add_option("--light-theta-max", light_theta_max_deg_, "polar angle of the lowest light of the dome, degrees (default 65)")
+  app->add_option("--light-theta-max", light_theta_max_deg_,
+                  "polar angle of the lowest light of the dome, degrees (default 65)")
       ->check(Within(5, 89))
       ->group(what);
   app->add_option("--size", size_, "texels a side of hills (default 64)")->check(CLI::Range(8, 8192))->group(what);
-  app->add_option("--steepness", steepness_, "factor of the height of hills (default 1)")->check(Within(0, 5))->group(what);
+  app->add_option("--steepness", steepness_, "factor of the height of hills (default 1)")
+      ->check(Within(0, 5))
+      ->group(what);
   app->add_option("--bits", bits_, "16: PNG (default); 32: OpenEXR")->check(CLI::IsMember({16, 32}))->group(what);
   app->add_flag("--cast-shadows", shadows_, "hills shade each other")->group(what);
 }

@@ -1,8 +1,9 @@
+#include "tests/maps/texels.h"
+#include <gtest/gtest.h>
+
 #include "lobefit/core/brdf/brdf.h"
 #include "lobefit/core/brdf/ggx_lobe.h"
 #include "lobefit/math/directions.h"
-#include "tests/maps/texels.h"
-#include <gtest/gtest.h>
 
 namespace lobefit {
 namespace {

@@ -61,7 +61,8 @@ TEST_F(StackReading, ValuesComeInTheirPlaces) {
   for (std::size_t x = 0; x < 3; ++x) {
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t l = 0; l < 4; ++l) {
-        const double stored = (20.0 * static_cast<double>(l) + 9 + 3 * static_cast<double>(x) + static_cast<double>(c)) * 256 / 65535;
+        const double stored =
+            (20.0 * static_cast<double>(l) + 9 + 3 * static_cast<double>(x) + static_cast<double>(c)) * 256 / 65535;
         EXPECT_NEAR(band.values[(x * 3 + c) * 4 + l], stored / (l == 2 ? std::exp2(c) : 1), 1e-7);
       }
     }

@@ -7,9 +7,18 @@ namespace lobefit {
 namespace {
 
 constexpr int kMostIterations = 100;
-constexpr double kTolerance = 1e-10;
 // Of the cost, a light: below, values in single precision say nothing.
 constexpr double kExact = 1e-20;
+
+// A decrease below this part of the cost is near the minimum; a descent whose steps promise less than a tenth of what it
+// is behind will not catch up.
+constexpr double kNear = 0.2, kHopeless = 10;
+
+// On the way to the same minimum.
+bool IsSame(const MapPoint& a, const MapPoint& b) {
+  return Dot(a.normal, b.normal) > 0.99999 && std::fabs(a.width[0] - b.width[0]) < 0.05 &&
+         std::fabs(a.width[1] - b.width[1]) < 0.02 && std::fabs(a.width[2] - b.width[2]) < 0.05;
+}
 
 // Where unknown j stands, for those that have bounds. Null: the turns of the normal.
 double* Place(const MapModel& model, MapPoint* point, int j) {
@@ -49,6 +58,52 @@ void Moved(const MapModel& model, const MapBounds& bounds, const MapPoint& from,
     double* place = Place(model, to, j);
     *place = std::clamp(*place + step[j], low, high);
   }
+}
+
+// The damped step, and the decrease that the quadratic promises. What would leave its bounds goes as far as they are, and
+// the others follow. False where the damped matrix is not positive definite.
+bool BoundedStep(const MapModel& model, const MapBounds& bounds, MapPoint point, const MapVector& gradient,
+                 const MapMatrix& hessian, double damping, const std::array<bool, kMostUnknowns>& held, MapVector* step,
+                 double* promised) {
+  const int unknowns = model.Unknowns();
+  std::array<bool, kMostUnknowns> fixed = held;
+  MapVector known = {};  // steps of what is fixed
+  for (int round = 0; round <= unknowns; ++round) {
+    MapMatrix factor = hessian;
+    for (int j = 0; j < unknowns; ++j) factor[j][j] += damping * hessian[j][j] + 1e-300;
+    for (int j = 0; j < unknowns; ++j) {
+      (*step)[j] = fixed[j] ? 0 : -gradient[j];
+      for (int k = 0; !fixed[j] && k < unknowns; ++k) (*step)[j] -= hessian[j][k] * known[k];
+    }
+    if (!Factorise(unknowns, fixed, &factor)) return false;
+    SolveFactorised(unknowns, factor, step);
+    int leaving = -1;
+    double most = 0;
+    for (int j = 2; j < unknowns; ++j) {
+      if (fixed[j]) {
+        (*step)[j] = known[j];
+        continue;
+      }
+      double low, high;
+      BoundsOf(model, bounds, j, &low, &high);
+      const double value = *Place(model, &point, j);
+      const double beyond = std::max(low - (value + (*step)[j]), value + (*step)[j] - high);
+      if (beyond > most) {
+        most = beyond, leaving = j;
+        known[j] = (*step)[j] < 0 ? low - value : high - value;
+      }
+    }
+    if (leaving < 0) break;
+    for (int j = 2; j < unknowns; ++j) known[j] = j == leaving || fixed[j] ? known[j] : 0;
+    fixed[leaving] = true;
+  }
+  *promised = 0;
+  for (int j = 0; j < unknowns; ++j) {
+    double bent = 0;
+    for (int k = 0; k < unknowns; ++k) bent += hessian[j][k] * (*step)[k];
+    *promised -= (*step)[j] * (gradient[j] + 0.5 * bent);
+  }
+  return true;
 }
 
 }  // namespace
@@ -98,46 +153,47 @@ void SolveFactorised(int unknowns, const MapMatrix& factor, MapVector* x) {
 }
 
 MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint& start, const MapBounds& bounds,
-                   double loss, TexelObjective* objective) {
+                   double loss, TexelObjective* objective, double tolerance, const MapDescent* known) {
   const int unknowns = model.Unknowns();
   const double exact = kExact * static_cast<double>(data.lights.count);
   MapDescent at = {start, 0, false, 0};
   MapVector gradient = {};
   MapMatrix hessian = {};
-  double damping = 1e-3;
+  double damping = 1e-4;
+  bool near = false;
   while (at.iterations < kMostIterations) {
-    at.cost =
-        objective->Derivatives(model, data, at.point, loss, TexelObjective::Curvature::kClipped, &gradient, &hessian);
+    at.cost = objective->Derivatives(model, data, at.point, loss,
+                                     near ? TexelObjective::Curvature::kClipped : TexelObjective::Curvature::kNone,
+                                     &gradient, &hessian);
+    if (known != nullptr && IsSame(at.point, known->point)) return at;
     std::array<bool, kMostUnknowns> held = {};
     for (int j = 0; j < unknowns; ++j) held[j] = IsHeld(model, at.point, bounds, j, gradient[j]);
     bool moved = false;
     for (; !moved && at.iterations < kMostIterations; ++at.iterations) {
-      MapMatrix factor = hessian;
-      for (int j = 0; j < unknowns; ++j) factor[j][j] += damping * hessian[j][j] + 1e-300;
-      if (!Factorise(unknowns, held, &factor)) {
+      MapVector step;
+      double promised;
+      if (!BoundedStep(model, bounds, at.point, gradient, hessian, damping, held, &step, &promised)) {
         damping = std::max(10 * damping, 1e-9);
         if (damping > 1e12) return at;
         continue;
       }
-      MapVector step = {};
-      double promised = 0;
-      for (int j = 0; j < unknowns; ++j) step[j] = held[j] ? 0 : -gradient[j];
-      SolveFactorised(unknowns, factor, &step);
-      for (int j = 0; j < unknowns; ++j) promised -= 0.5 * step[j] * gradient[j];
-      if (promised <= kTolerance * at.cost * (damping < 1e-2 ? 1 : 1e-2) || promised <= exact) {
+      if (promised <= tolerance * at.cost * (damping < 1e-2 ? 1 : 1e-2) || promised <= exact) {
         at.converged = true;
         return at;
       }
+      if (known != nullptr && near && damping < 1e-2 && at.cost - kHopeless * promised > known->cost) return at;
       // A normal turns by at most half a radian a step: beyond, the tangents are no measure.
       const double turn = std::hypot(step[0], step[1]);
       if (turn > 0.5) step[0] *= 0.5 / turn, step[1] *= 0.5 / turn;
       MapPoint next;
       Moved(model, bounds, at.point, step, &next);
-      const double cost = objective->Cost(model, data, next, loss);
+      const double cost = near ? objective->Cost(model, data, next, loss)
+                               : objective->CostOfShape(model, data, loss, bounds.most_f0, &next);
       if (cost < at.cost) {
         const double quality = (at.cost - cost) / promised;
-        damping = quality > 0.75 ? damping * 0.1 : quality < 0.25 ? damping * 3 : damping;
+        damping = quality > 0.75 ? damping * 0.1 : quality < 0.25 ? damping * 4 : damping;
         damping = std::max(damping, 1e-12);
+        near = at.cost - cost < kNear * at.cost;
         at.point = next;
         at.cost = cost;
         moved = true;

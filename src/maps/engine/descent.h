@@ -20,9 +20,13 @@ struct MapDescent {
   int iterations = 0;
 };
 
-// Ends where the step that remains promises less than 1e-10 of the cost. Domain: start within the bounds.
+// Ends where the step that remains promises less than `tolerance` of the cost; not converged where it comes to where
+// `known` (unless null) is the end, or where `known` is better by much more than the steps still promise. Domain: start
+// within the bounds.
+inline constexpr double kFineTolerance = 1e-10, kCoarseTolerance = 1e-4;
 MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint& start, const MapBounds& bounds,
-                   double loss, TexelObjective* objective);
+                   double loss, TexelObjective* objective, double tolerance = kFineTolerance,
+                   const MapDescent* known = nullptr);
 
 // Whether unknown j is held, or stands at a bound against which the cost falls (gradient as of Derivatives).
 bool IsHeld(const MapModel& model, const MapPoint& point, const MapBounds& bounds, int j, double derivative);

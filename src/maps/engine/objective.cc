@@ -26,6 +26,19 @@ double SumOfLog1p(const std::vector<double>& x, double factor, std::size_t padde
 
 }  // namespace
 
+void BestAmplitudes(const AmplitudeSums& sums, double most_b, double* a, double* b) {
+  const double det = sums.aa * sums.bb - sums.ab * sums.ab;
+  const bool both = det > 1e-12 * sums.aa * sums.bb;
+  const auto a_for = [&](double other) {
+    return sums.aa > 0 ? std::max(0.0, (sums.ay - sums.ab * other) / sums.aa) : 0.0;
+  };
+  *b = both ? (sums.by * sums.aa - sums.ay * sums.ab) / det : 0;
+  *a = both ? (sums.ay * sums.bb - sums.by * sums.ab) / det : 0;
+  if (both && *a < 0) *a = 0, *b = sums.by / sums.bb;
+  *b = std::clamp(*b, 0.0, most_b);
+  if (!both || *b <= 0 || *b >= most_b) *a = a_for(*b);
+}
+
 void TexelData::Resize(std::size_t padded) {
   lights.Resize(padded);
   for (std::vector<double>& v : value) v.resize(padded);
@@ -41,15 +54,18 @@ void TexelObjective::Resize(std::size_t padded) {
   }
 }
 
-double TexelObjective::Residuals(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,
-                                 bool gradient) {
+void TexelObjective::Shape(const MapModel& model, const TexelData& data, const MapPoint& point, bool gradient) {
   const LightArrays& lights = data.lights;
   EvaluateShape(model.lobe, point, lights, gradient, &shape_);
-  const bool lobe = model.lobe != MapLobe::kNone;
-  for (std::size_t l = 0; lobe && l < lights.padded; ++l) {
+  for (std::size_t l = 0; model.lobe != MapLobe::kNone && l < lights.padded; ++l) {
     lobe_[l] = (1 - lights.k[l]) * shape_.specular[l];
     carried_[l] = lights.k[l] / data.scale;
   }
+}
+
+double TexelObjective::Residuals(const MapModel& model, const TexelData& data, const MapPoint& point, double loss) {
+  const LightArrays& lights = data.lights;
+  const bool lobe = model.lobe != MapLobe::kNone;
   std::fill(square_.begin(), square_.begin() + static_cast<std::ptrdiff_t>(lights.padded), 0.0);
   for (int c = 0; c < model.channels; ++c) {
     const double d = point.diffuse[c], f0 = point.f0[c];
@@ -66,12 +82,38 @@ double TexelObjective::Residuals(const MapModel& model, const TexelData& data, c
 }
 
 double TexelObjective::Cost(const MapModel& model, const TexelData& data, const MapPoint& point, double loss) {
-  return Residuals(model, data, point, loss, false);
+  Shape(model, data, point, false);
+  return Residuals(model, data, point, loss);
+}
+
+double TexelObjective::CostOfShape(const MapModel& model, const TexelData& data, double loss, double most_f0,
+                                   MapPoint* point) {
+  Shape(model, data, *point, false);
+  const std::size_t padded = data.lights.padded;
+  const bool lobe = model.lobe != MapLobe::kNone;
+  const double *w = weight_.data(), *A = shape_.cosine.data(), *B = lobe_.data(), *k = carried_.data(),
+               *s = shape_.specular.data();
+  const double aa = SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * A[l]; });
+  const double ab = lobe ? SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * B[l]; }) : 0;
+  const double bb = lobe ? SumOverLights(padded, [=](std::size_t l) { return w[l] * B[l] * B[l]; }) : 0;
+  for (int c = 0; c < model.channels; ++c) {
+    const double* y = data.value[c].data();
+    double ay, by = 0;
+    if (lobe) {
+      ay = SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * (y[l] - k[l] * s[l]); });
+      by = SumOverLights(padded, [=](std::size_t l) { return w[l] * B[l] * (y[l] - k[l] * s[l]); });
+    } else {
+      ay = SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * y[l]; });
+    }
+    BestAmplitudes({aa, ab, bb, ay, by}, most_f0, &point->diffuse[c], &point->f0[c]);
+  }
+  return Residuals(model, data, *point, loss);
 }
 
 double TexelObjective::Derivatives(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,
                                    Curvature curvature, MapVector* gradient, MapMatrix* hessian) {
-  const double cost = Residuals(model, data, point, loss, true);
+  Shape(model, data, point, true);
+  const double cost = Residuals(model, data, point, loss);
   const LightArrays& lights = data.lights;
   const std::size_t padded = lights.padded;
   const bool lobe = model.lobe != MapLobe::kNone;
@@ -81,7 +123,9 @@ double TexelObjective::Derivatives(const MapModel& model, const TexelData& data,
     const double w = lights.live[l] / (1 + square_[l] / (loss * loss));
     weight_[l] = w;
     const double whole = -2 * w * w / (loss * loss);
-    bend_[l] = curvature == Curvature::kWhole ? whole : std::max(whole, -(1 - kLeast) * w / (square_[l] + 1e-300));
+    bend_[l] = curvature == Curvature::kWhole  ? whole
+               : curvature == Curvature::kNone ? 0
+                                               : std::max(whole, -(1 - kLeast) * w / (square_[l] + 1e-300));
   }
   for (int j = 0; j < shape; ++j) {
     std::vector<double>& v = rows_[j];

@@ -21,6 +21,13 @@ struct TexelData {
   void Resize(std::size_t padded);
 };
 
+// Weighed sums over lights of the products of two functions a, b and of values y.
+struct AmplitudeSums {
+  double aa, ab, bb, ay, by;
+};
+// a >= 0 and 0 <= b <= most_b that minimise sum (a A + b B - y)^2.
+void BestAmplitudes(const AmplitudeSums& sums, double most_b, double* a, double* b);
+
 // cost = sum over lights of c^2 / 2 ln(1 + |r|^2 / c^2), Cauchy's loss of the light's residuals r in all channels
 // together, so that a cast shadow or a highlight of something else is one outlier.
 class TexelObjective {
@@ -28,9 +35,13 @@ class TexelObjective {
   void Resize(std::size_t padded);
   // Infinite where it is no number.
   double Cost(const MapModel& model, const TexelData& data, const MapPoint& point, double loss);
-  // How the loss bends the second derivatives: clipped so that the matrix has no negative curvature (for a descent), or
-  // as it is (for errors).
-  enum class Curvature { kClipped, kWhole };
+  // The same where the amplitudes are not those of the point but, within 0 and most_f0, the best for its shape under the
+  // weights of the last call of Derivatives; they are stored in the point. Long curved valleys between width and f0 are
+  // so left at one step.
+  double CostOfShape(const MapModel& model, const TexelData& data, double loss, double most_f0, MapPoint* point);
+  // How the loss bends the second derivatives: not at all, so that the quadratic lies above the cost of a linear model
+  // (far from the minimum); clipped so that the matrix has no negative curvature (near it); or as it is (for errors).
+  enum class Curvature { kNone, kClipped, kWhole };
   double Derivatives(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,
                      Curvature curvature, MapVector* gradient, MapMatrix* hessian);
 
@@ -44,7 +55,8 @@ class TexelObjective {
   double Jacobian(const MapModel& model, int channel, int unknown, std::size_t light) const;
 
  private:
-  double Residuals(const MapModel& model, const TexelData& data, const MapPoint& point, double loss, bool gradient);
+  void Shape(const MapModel& model, const TexelData& data, const MapPoint& point, bool gradient);
+  double Residuals(const MapModel& model, const TexelData& data, const MapPoint& point, double loss);
 
   ShapeArrays shape_;
   std::vector<double> residual_[kMostChannels], square_, weight_, bend_;

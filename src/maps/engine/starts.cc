@@ -25,15 +25,6 @@ Vec3 Solve3(const double A[6], const Vec3& b) {  // xx xy xz yy yz zz
           (c_xz * b.x + c_yz * b.y + c_zz * b.z) / det};
 }
 
-// Two amplitudes that minimise a quadratic, neither negative.
-void NonNegative(double aa, double ab, double bb, double ay, double by, double* a, double* b) {
-  const double det = aa * bb - ab * ab;
-  *a = det > 1e-12 * aa * bb ? (ay * bb - by * ab) / det : 0;
-  *b = det > 1e-12 * aa * bb ? (by * aa - ay * ab) / det : 0;
-  if (det <= 1e-12 * aa * bb || *b < 0) *b = 0, *a = aa > 0 ? std::max(0.0, ay / aa) : 0;
-  if (*a < 0) *a = 0, *b = bb > 0 ? std::max(0.0, by / bb) : 0;
-}
-
 }  // namespace
 
 MapPoint LambertStart(const MapModel& model, const TexelData& data, const std::vector<double>& mean,
@@ -103,7 +94,7 @@ double SolveAmplitudes(const MapModel& model, const TexelData& data, double loss
         }
         aa += w * cosine * cosine, ab += w * cosine * s, bb += w * s * s, ay += w * cosine * y, by += w * s * y;
       }
-      NonNegative(aa, ab, bb, ay, by, &point->diffuse[c], &point->f0[c]);
+      BestAmplitudes({aa, ab, bb, ay, by}, 1e300, &point->diffuse[c], &point->f0[c]);
     }
   }
   return objective->Cost(model, data, *point, loss);

@@ -122,9 +122,10 @@ MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent&
   // The other normal may lie in another valley: near one it leads to the same.
   if (Dot(normals[0], normals[1]) > 0.9998) return best;
   const int other = 1 - first;
-  const MapDescent second = Descend(model, data_, starts[other], bounds_, rules_.loss, &objective_);
+  const MapDescent second =
+      Descend(model, data_, starts[other], bounds_, rules_.loss, &objective_, kFineTolerance, &best);
   const int iterations = best.iterations + second.iterations;
-  if (second.cost < best.cost) best = second;
+  if (second.converged && second.cost < best.cost) best = second;
   best.iterations = iterations;
   return best;
 }
@@ -144,18 +145,25 @@ TexelFit TexelFitter::Fit(const float* values, std::size_t stride, double log_al
              rules_.schlick ? 1 / data_.scale : 1e6,
              0.02};
   const MapModel none = {MapLobe::kNone, channels_, rules_.schlick};
-  MapDescent best =
-      Descend(none, data_, LambertStart(none, data_, mean_, bounds_, {}), bounds_, rules_.loss, &objective_);
+  // Coarse where it only serves as a start and to be compared with.
+  const bool lobe_wanted = rules_.lobe != MapLobe::kNone;
+  MapDescent best = Descend(none, data_, LambertStart(none, data_, mean_, bounds_, {}), bounds_, rules_.loss,
+                            &objective_, lobe_wanted ? kCoarseTolerance : kFineTolerance);
   MapModel model = none;
-  if (rules_.lobe != MapLobe::kNone) {
+  if (lobe_wanted) {
     const MapModel with = {rules_.lobe, channels_, rules_.schlick};
     const MapDescent lobe = DescendWithLobe(with, best, log_alpha);
     // Bayesian information criterion, with the profiled level of noise.
     const double count = static_cast<double>(fit.used) * channels_;
     const double more = with.Unknowns() - none.Unknowns() - (bounds_.width_held ? with.Shape() - 2 : 0);
     const bool evidence = count * std::log(best.cost / lobe.cost) > more * std::log(count);
-    const int iterations = best.iterations + lobe.iterations;
-    if (rules_.choice == LobeChoice::kAlways || evidence) best = lobe, model = with;
+    int iterations = best.iterations + lobe.iterations;
+    if (rules_.choice == LobeChoice::kAlways || evidence) {
+      best = lobe, model = with;
+    } else {
+      best = Descend(none, data_, best.point, bounds_, rules_.loss, &objective_);
+      iterations += best.iterations;
+    }
     best.iterations = iterations;
   }
   if (model.lobe == MapLobe::kNone && rules_.lobe != MapLobe::kNone) fit.status |= kMapNoLobe;

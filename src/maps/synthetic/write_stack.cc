@@ -90,7 +90,8 @@ void WriteStack(const Maps& maps, const StackSynthesis& synthesis, const std::fi
     throw UsageError("--noise '" + ToText(other) + "': a stack has the terms multiplicative and additive");
   }
   MakeFolder(folder);
-  const std::size_t width = maps.rows.width, height = maps.rows.rows, channels = static_cast<std::size_t>(maps.channels);
+  const std::size_t width = maps.rows.width, height = maps.rows.rows,
+                    channels = static_cast<std::size_t>(maps.channels);
   const bool exr = synthesis.bits == 32;
   std::string lp = fmt::format("{}\n", synthesis.lights.size()), intensities;
   // One exposure for all images, as a camera with fixed settings has.
@@ -110,21 +111,23 @@ void WriteStack(const Maps& maps, const StackSynthesis& synthesis, const std::fi
   }
   WriteFileAtomically(folder / "lights.lp", lp);
   WriteFileAtomically(folder / "intensity.txt", intensities);
-  WriteMapsExr(maps.planes, width, height,
-               [&](std::size_t first, std::size_t end) {
-                 MapRows rows = {first, end - first, width, {}};
-                 for (const std::vector<float>& plane : maps.rows.values) {
-                   rows.values.emplace_back(plane.begin() + static_cast<std::ptrdiff_t>(first * width),
-                                            plane.begin() + static_cast<std::ptrdiff_t>(end * width));
-                 }
-                 return rows;
-               },
-               folder / "truth.maps.exr");
+  WriteMapsExr(
+      maps.planes, width, height,
+      [&](std::size_t first, std::size_t end) {
+        MapRows rows = {first, end - first, width, {}};
+        for (const std::vector<float>& plane : maps.rows.values) {
+          rows.values.emplace_back(plane.begin() + static_cast<std::ptrdiff_t>(first * width),
+                                   plane.begin() + static_cast<std::ptrdiff_t>(end * width));
+        }
+        return rows;
+      },
+      folder / "truth.maps.exr");
   // Last: a folder with it is whole.
-  WriteFileAtomically(folder / "stack.toml",
-                      fmt::format("# Synthetic: the truth is truth.maps.exr; noise: {}\nencoding = \"linear\"\ncalibrated = {}\n\n"
-                                  "[lights]\nfile = \"lights.lp\"\nintensity = \"intensity.txt\"\n",
-                                  synthesis.noise == Noise{} ? "none" : ToText(synthesis.noise), synthesis.calibrated));
+  WriteFileAtomically(
+      folder / "stack.toml",
+      fmt::format("# Synthetic: the truth is truth.maps.exr; noise: {}\nencoding = \"linear\"\ncalibrated = {}\n\n"
+                  "[lights]\nfile = \"lights.lp\"\nintensity = \"intensity.txt\"\n",
+                  synthesis.noise == Noise{} ? "none" : ToText(synthesis.noise), synthesis.calibrated));
 }
 
 }  // namespace lobefit
