@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "measurement_options.h"
+#include "stack_report.h"
 #include "verb.h"
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -164,7 +165,8 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
   auto files = std::make_shared<std::vector<std::string>>();
   app->add_option(
          "FILE", *files,
-         "measurement files: one, or several and folders as one measurement; FILE:theta_i=30 states what a file lacks")
+         "measurement files: one, or several and folders as one measurement; FILE:theta_i=30 states what a file lacks; or "
+         "an image stack")
       ->required();
   auto statistics = std::make_shared<bool>(false);
   app->add_flag("--statistics", *statistics,
@@ -172,7 +174,11 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
   auto picture = std::make_shared<std::string>();
   app->add_option("--png", *picture, "also write where the samples lie over the hemisphere to this picture");
   options->AddTo(app);
+  auto encoding = std::make_shared<std::string>();
+  app->add_option("--encoding", *encoding, "of an image stack: how pixels are stored: linear, srgb, gamma:G");
   return [=] {
+    if (files->size() == 1 && LooksLikeStack(files->front()))
+      return DescribeStack(files->front(), {*encoding}, common->json);
     const Measurement measurement = options->Load(*files);
     Description description = DescribeRanges(measurement);
     if (*statistics || measurement.samples.size() <= kStatisticsByDefault) {

@@ -5,6 +5,7 @@
 
 #include "measurement_options.h"
 #include "report_formats.h"
+#include "stack_report.h"
 #include "verb.h"
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ namespace {
 struct ReportVerb {
   MeasurementOptions measurement;
   std::vector<std::string> files;
-  std::string material, out, format = "png";
+  std::string material, out, format = "png", encoding;
   double scale = 2;
 };
 
@@ -45,6 +46,10 @@ std::filesystem::path PictureOf(const ReportVerb& verb) {
 }
 
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
+  if (verb.material.ends_with(".maps.exr")) {
+    if (verb.files.size() != 1) throw UsageError("maps are drawn against one image stack");
+    return ReportMaps(verb.material, verb.files[0], {verb.encoding}, verb.out, verb.scale);
+  }
   const std::vector<std::string> formats = ParseReportFormats(verb.format);
   std::vector<std::filesystem::path> inputs = InputPaths(verb.files);
   inputs.emplace_back(verb.material);
@@ -66,8 +71,8 @@ int RunReport(const ReportVerb& verb, const CommonOptions& common) {
 
 std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<ReportVerb>();
-  app->add_option("MATERIAL", verb->material, "a *.material.json")->required();
-  app->add_option("MEASUREMENT", verb->files, "the measurement that it was fitted to: one file, or several and folders")
+  app->add_option("MATERIAL", verb->material, "a *.material.json, or NAME.maps.exr of `lobefit maps`")->required();
+  app->add_option("MEASUREMENT", verb->files, "the measurement that it was fitted to: one file, or several and folders; of maps, the image stack")
       ->required();
   app->add_option("--out", verb->out,
                   "the picture, or the folder for it (default: NAME.report.png beside the material)");
@@ -75,6 +80,7 @@ std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
                   "png (default), html, exr (the maps behind the pictures), or several with commas between");
   app->add_option("--scale", verb->scale, "pixels to one unit of the page, which is 1320 units wide (default 2)")
       ->check(CLI::Range(0.25, 4.0));
+  app->add_option("--encoding", verb->encoding, "of an image stack: how pixels are stored: linear, srgb, gamma:G");
   verb->measurement.AddTo(app);
   return [=] { return RunReport(*verb, *common); };
 }

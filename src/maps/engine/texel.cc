@@ -231,9 +231,11 @@ void TexelFitter::Report(const MapModel& model, const MapDescent& best, TexelFit
     const bool unknown_x = !(fit->log_alpha_x_error < kMostLogError),
                unknown_y = !(fit->log_alpha_y_error < kMostLogError);
     if (unknown_x || unknown_y) {
+      // What f0 is follows from the width: the height of a lobe of unknown width says neither.
       fit->status |= kMapNotDetermined;
       fit->alpha_x = fit->alpha_y = fit->log_alpha_x_error = fit->log_alpha_y_error = kNan;
       fit->angle = fit->angle_error = kNan;
+      for (int c = 0; c < channels_; ++c) fit->f0[c] = fit->f0_error[c] = kNan;
     }
     return;
   }

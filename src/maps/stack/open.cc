@@ -108,6 +108,17 @@ std::size_t Stack::Texels() const {
   return static_cast<std::size_t>(std::count_if(mask.begin(), mask.end(), [](std::uint8_t m) { return m != 0; }));
 }
 
+bool LooksLikeStack(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error)) return path.extension() == ".lp" || path.filename() == "stack.toml";
+  if (std::filesystem::exists(path / "stack.toml", error) || std::filesystem::exists(path / "filenames.txt", error))
+    return true;
+  for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
+    if (entry.path().extension() == ".lp") return true;
+  }
+  return false;
+}
+
 Stack OpenStack(const std::filesystem::path& path, const StackOptions& options) {
   StackFiles files = ReadLayout(path);
   Stack& stack = files.stack;

@@ -45,6 +45,9 @@ struct StackOptions {
 // folder with one. Opens each image to see its size. Throws InputError that names the file and the cure.
 Stack OpenStack(const std::filesystem::path& path, const StackOptions& options);
 
+// Whether OpenStack would take the path for a stack: by its name and what lies in the folder, not by its images.
+bool LooksLikeStack(const std::filesystem::path& path);
+
 // SHA-256 of everything that a fit depends on: the bytes of the images, and lights, mask and response as read.
 std::string DigestOf(const Stack& stack);
 

@@ -1,0 +1,19 @@
+// What `report` and `info` do with image stacks and maps.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "lobefit/maps/stack/stack.h"
+
+namespace lobefit {
+
+// Draws NAME.maps.report.png and prints how well lights that were not fitted are predicted. `out`: the picture, its
+// folder, or empty: beside the maps. Throws InputError, OutputError.
+int ReportMaps(const std::filesystem::path& maps, const std::filesystem::path& stack, const StackOptions& options,
+               const std::filesystem::path& out, double scale);
+
+// What a stack holds: lights, encoding, shares of dark and saturated values. Reads all images.
+int DescribeStack(const std::filesystem::path& stack, const StackOptions& options, bool json);
+
+}  // namespace lobefit
