@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lobefit/maps/engine/kernels.h"
+
 namespace lobefit {
 namespace {
 
@@ -46,7 +48,7 @@ void TexelData::Resize(std::size_t padded) {
 
 void TexelObjective::Resize(std::size_t padded) {
   shape_.Resize(padded);
-  for (std::vector<double>* a : {&square_, &weight_, &bend_, &lobe_, &carried_}) a->resize(padded);
+  for (std::vector<double>* a : {&square_, &weight_, &bend_, &lobe_, &carried_, &weighted_}) a->resize(padded);
   for (std::vector<double>& r : residual_) r.resize(padded);
   for (std::vector<double>& r : rows_) r.resize(padded);
   for (auto& channel : jacobian_) {
@@ -91,22 +93,27 @@ double TexelObjective::CostOfShape(const MapModel& model, const TexelData& data,
   Shape(model, data, *point, false);
   const std::size_t padded = data.lights.padded;
   const bool lobe = model.lobe != MapLobe::kNone;
-  const double *w = weight_.data(), *A = shape_.cosine.data(), *B = lobe_.data(), *k = carried_.data(),
-               *s = shape_.specular.data();
-  const double aa = SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * A[l]; });
-  const double ab = lobe ? SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * B[l]; }) : 0;
-  const double bb = lobe ? SumOverLights(padded, [=](std::size_t l) { return w[l] * B[l] * B[l]; }) : 0;
-  for (int c = 0; c < model.channels; ++c) {
-    const double* y = data.value[c].data();
-    double ay, by = 0;
-    if (lobe) {
-      ay = SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * (y[l] - k[l] * s[l]); });
-      by = SumOverLights(padded, [=](std::size_t l) { return w[l] * B[l] * (y[l] - k[l] * s[l]); });
-    } else {
-      ay = SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * y[l]; });
+  const double *w = weight_.data(), *A = shape_.cosine.data(), *B = lobe_.data();
+  // Sums of w A and w B with A, B and the values, from which what Schlick's term adds whatever f0 is, is taken.
+  AmplitudeSums sums[kMostChannels] = {};
+  for (int a = 0; a < model.PerChannel(); ++a) {
+    double* scaled = weighted_.data();
+    for (std::size_t l = 0; l < padded; ++l) scaled[l] = w[l] * (a == 0 ? A : B)[l];
+    double carried = 0, products[2 + kMostChannels];
+    const double* with[2 + kMostChannels] = {A, lobe ? B : A};
+    for (int c = 0; c < model.channels; ++c) with[2 + c] = data.value[c].data();
+    DotProducts(scaled, with, 2 + model.channels, padded, products);
+    if (lobe && model.schlick) {
+      for (std::size_t l = 0; l < padded; ++l) square_[l] = carried_[l] * shape_.specular[l];
+      const double* one = square_.data();  // filled anew by Residuals
+      DotProducts(scaled, &one, 1, padded, &carried);
     }
-    BestAmplitudes({aa, ab, bb, ay, by}, most_f0, &point->diffuse[c], &point->f0[c]);
+    for (int c = 0; c < model.channels; ++c) {
+      if (a == 0) sums[c].aa = products[0], sums[c].ab = lobe ? products[1] : 0, sums[c].ay = products[2 + c] - carried;
+      if (a == 1) sums[c].bb = products[1], sums[c].by = products[2 + c] - carried;
+    }
   }
+  for (int c = 0; c < model.channels; ++c) BestAmplitudes(sums[c], most_f0, &point->diffuse[c], &point->f0[c]);
   return Residuals(model, data, *point, loss);
 }
 
@@ -148,35 +155,40 @@ double TexelObjective::Derivatives(const MapModel& model, const TexelData& data,
     for (std::size_t l = 0; l < padded; ++l) vd[l] = r[l] * shape_.cosine[l];
     for (std::size_t l = 0; lobe && l < padded; ++l) vf[l] = r[l] * lobe_[l];
   }
+  // The loss's part, bend (J^T r)(J^T r)^T, then each channel's w J^T J: amplitudes are the same functions in all.
+  const double* rows[kMostUnknowns];
+  for (int j = 0; j < unknowns; ++j) rows[j] = rows_[j].data();
+  DotProducts(weight_.data(), rows, unknowns, padded, gradient->data());
+  double* scaled = weighted_.data();
+  const auto weigh = [&](const double* by, const double* what) {
+    for (std::size_t l = 0; l < padded; ++l) scaled[l] = by[l] * what[l];
+  };
+  const bool bent = curvature != Curvature::kNone;
   for (int j = 0; j < unknowns; ++j) {
-    const double *v = rows_[j].data(), *w = weight_.data(), *b = bend_.data();
-    (*gradient)[j] = SumOverLights(padded, [=](std::size_t l) { return w[l] * v[l]; });
-    for (int k = 0; k <= j; ++k) {
-      const double* u = rows_[k].data();
-      (*hessian)[j][k] = SumOverLights(padded, [=](std::size_t l) { return b[l] * v[l] * u[l]; });
+    std::fill((*hessian)[j].begin(), (*hessian)[j].end(), 0.0);
+    if (!bent) continue;
+    weigh(bend_.data(), rows[j]);
+    DotProducts(scaled, rows, j + 1, padded, (*hessian)[j].data());
+  }
+  const double* amplitudes[2] = {shape_.cosine.data(), lobe_.data()};
+  const int per_channel = model.PerChannel();
+  double products[kMostShape + 2];
+  for (int a = 0; a < per_channel; ++a) {
+    weigh(weight_.data(), amplitudes[a]);
+    DotProducts(scaled, amplitudes, a + 1, padded, products);
+    for (int c = 0; c < channels; ++c) {
+      for (int b = 0; b <= a; ++b) (*hessian)[model.DiffuseAt(c) + a][model.DiffuseAt(c) + b] += products[b];
     }
   }
-  const double* w = weight_.data();
   for (int c = 0; c < channels; ++c) {
-    const double* amplitudes[2] = {shape_.cosine.data(), lobe_.data()};
+    const double* columns[kMostShape + 2];
     for (int j = 0; j < shape; ++j) {
-      const double* J = jacobian_[c][j].data();
-      for (int k = 0; k <= j; ++k) {
-        const double* K = jacobian_[c][k].data();
-        (*hessian)[j][k] += SumOverLights(padded, [=](std::size_t l) { return w[l] * J[l] * K[l]; });
-      }
-      for (int a = 0; a < model.PerChannel(); ++a) {
-        const double* A = amplitudes[a];
-        (*hessian)[model.DiffuseAt(c) + a][j] +=
-            SumOverLights(padded, [=](std::size_t l) { return w[l] * J[l] * A[l]; });
-      }
-    }
-    for (int a = 0; a < model.PerChannel(); ++a) {
-      for (int b = 0; b <= a; ++b) {
-        const double *A = amplitudes[a], *B = amplitudes[b];
-        (*hessian)[model.DiffuseAt(c) + a][model.DiffuseAt(c) + b] +=
-            SumOverLights(padded, [=](std::size_t l) { return w[l] * A[l] * B[l]; });
-      }
+      weigh(weight_.data(), jacobian_[c][j].data());
+      for (int k = 0; k <= j; ++k) columns[k] = jacobian_[c][k].data();
+      for (int a = 0; a < per_channel; ++a) columns[j + 1 + a] = amplitudes[a];
+      DotProducts(scaled, columns, j + 1 + per_channel, padded, products);
+      for (int k = 0; k <= j; ++k) (*hessian)[j][k] += products[k];
+      for (int a = 0; a < per_channel; ++a) (*hessian)[model.DiffuseAt(c) + a][j] += products[j + 1 + a];
     }
   }
   for (int j = 0; j < unknowns; ++j) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "lobefit/maps/engine/kernels.h"
+
 namespace lobefit {
 namespace {
 
@@ -25,34 +27,9 @@ void Cosines(const MapFrame& frame, const LightArrays& lights, bool gradient, Sh
 //   specular = |h|^4 i_z / (pi alpha^2 K^2 (i_z + s_i) (o_z + s_o)).
 void Isotropic(const MapPoint& point, const MapFrame& frame, const LightArrays& lights, bool gradient,
                ShapeArrays* out) {
-  const double alpha = std::exp(point.width[0]), a2 = alpha * alpha, inverse = 1 / a2;
-  const double co = frame.n.z, so = std::sqrt(co * co + a2 * (1 - co * co));
-  const double dlog_co = -(1 + co * (1 - a2) / so) / (co + so);
-  const double dlog_alpha_o = -a2 * (1 - co * co) / (so * (co + so));
-  const double factor = kInvPi * inverse / (co + so);
-  for (std::size_t l = 0; l < lights.padded; ++l) {
-    const double c = out->cosine[l];
-    const double hz = frame.n.x * lights.h_x[l] + frame.n.y * lights.h_y[l] + frame.n.z * lights.h_z[l];
-    const double square = lights.square[l], off = square - hz * hz;
-    const double K = hz * hz + off * inverse;
-    const double s = std::sqrt(c * c + a2 * (1 - c * c));
-    const double value = factor * square * square * c / (K * K * (c + s));
-    out->specular[l] = value;
-    if (!gradient) continue;
-    // d ln specular by h_z, i_z and ln alpha, times specular; 1 / i_z is multiplied out: it may be 0.
-    const double over_K = 2 * value / K, over_c = value / (c + s);
-    const double by_hz = -over_K * 2 * hz * (1 - inverse);
-    const double by_ci = factor * square * square / (K * K * (c + s)) - over_c * (1 + c * (1 - a2) / s);
-    const double by_co = value * dlog_co;
-    out->dspecular[2][l] = value * (-2 + dlog_alpha_o) + over_K * 2 * off * inverse - over_c * a2 * (1 - c * c) / s;
-    const double lit = c > 0 ? 1 : 0;
-    for (int j = 0; j < 2; ++j) {
-      const Vec3 t = j == 0 ? frame.t : frame.b;
-      const double dh = t.x * lights.h_x[l] + t.y * lights.h_y[l] + t.z * lights.h_z[l];
-      const double di = t.x * lights.x[l] + t.y * lights.y[l] + t.z * lights.z[l];
-      out->dspecular[j][l] = lit * (by_hz * dh + by_ci * di + by_co * t.z);
-    }
-  }
+  double* const derivatives[3] = {out->dspecular[0].data(), out->dspecular[1].data(), out->dspecular[2].data()};
+  IsotropicLobe(std::exp(point.width[0]), frame, lights,
+                {out->cosine.data(), out->specular.data(), gradient ? derivatives : nullptr});
 }
 
 // Derivatives of the frame's axes t and b where n moves by dn.
