@@ -1,6 +1,7 @@
 #include "lobefit/maps/engine/kernels.h"
 
 #include <cmath>
+#include <cstring>
 
 // clang has no such functions for C++ yet: it takes the plain one.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
@@ -11,31 +12,65 @@
 
 namespace lobefit {
 
+namespace {
+
+// Four lanes, on any instruction set.
+using Lanes = double __attribute__((vector_size(32)));
+static_assert(sizeof(Lanes) == LightArrays::kLanes * sizeof(double));
+
+}  // namespace
+
 LOBEFIT_CLONES
 void DotProducts(const double* a, const double* const* b, int count, std::size_t padded, double* out) {
-  constexpr std::size_t kLanes = LightArrays::kLanes;
-  int k = 0;
-  for (; k + 4 <= count; k += 4) {
-    const double *b0 = b[k], *b1 = b[k + 1], *b2 = b[k + 2], *b3 = b[k + 3];
-    double s0[kLanes] = {}, s1[kLanes] = {}, s2[kLanes] = {}, s3[kLanes] = {};
-    for (std::size_t l = 0; l < padded; l += kLanes) {
-      for (std::size_t i = 0; i < kLanes; ++i) s0[i] += a[l + i] * b0[l + i];
-      for (std::size_t i = 0; i < kLanes; ++i) s1[i] += a[l + i] * b1[l + i];
-      for (std::size_t i = 0; i < kLanes; ++i) s2[i] += a[l + i] * b2[l + i];
-      for (std::size_t i = 0; i < kLanes; ++i) s3[i] += a[l + i] * b3[l + i];
+  for (int k = 0; k < count; k += 4) {
+    // The last block takes its own last array again where fewer than four are left.
+    const double* with[4];
+    for (int i = 0; i < 4; ++i) with[i] = b[k + i < count ? k + i : count - 1];
+    Lanes s0 = {}, s1 = {}, s2 = {}, s3 = {};
+    for (std::size_t l = 0; l < padded; l += LightArrays::kLanes) {
+      Lanes x, y;
+      std::memcpy(&x, a + l, sizeof x);
+      std::memcpy(&y, with[0] + l, sizeof y);
+      s0 += x * y;
+      std::memcpy(&y, with[1] + l, sizeof y);
+      s1 += x * y;
+      std::memcpy(&y, with[2] + l, sizeof y);
+      s2 += x * y;
+      std::memcpy(&y, with[3] + l, sizeof y);
+      s3 += x * y;
     }
-    out[k] = (s0[0] + s0[1]) + (s0[2] + s0[3]);
-    out[k + 1] = (s1[0] + s1[1]) + (s1[2] + s1[3]);
-    out[k + 2] = (s2[0] + s2[1]) + (s2[2] + s2[3]);
-    out[k + 3] = (s3[0] + s3[1]) + (s3[2] + s3[3]);
+    const double sums[4] = {(s0[0] + s0[1]) + (s0[2] + s0[3]), (s1[0] + s1[1]) + (s1[2] + s1[3]),
+                            (s2[0] + s2[1]) + (s2[2] + s2[3]), (s3[0] + s3[1]) + (s3[2] + s3[3])};
+    for (int i = 0; i < 4 && k + i < count; ++i) out[k + i] = sums[i];
   }
-  for (; k < count; ++k) {
-    const double* b0 = b[k];
-    double s0[kLanes] = {};
-    for (std::size_t l = 0; l < padded; l += kLanes) {
-      for (std::size_t i = 0; i < kLanes; ++i) s0[i] += a[l + i] * b0[l + i];
-    }
-    out[k] = (s0[0] + s0[1]) + (s0[2] + s0[3]);
+}
+
+LOBEFIT_CLONES
+void Multiply(const double* __restrict a, const double* __restrict b, std::size_t padded, double* __restrict out) {
+  for (std::size_t l = 0; l < padded; ++l) out[l] = a[l] * b[l];
+}
+
+LOBEFIT_CLONES
+void AddResiduals(const Amplitudes& amplitudes, const double* __restrict cosine, const double* __restrict specular,
+                  const double* __restrict k, const double* __restrict live, const double* __restrict values,
+                  std::size_t padded, double* __restrict residual, double* __restrict square) {
+  const double d = amplitudes.diffuse, f = amplitudes.f0, rest = amplitudes.carried - amplitudes.f0;
+  for (std::size_t l = 0; l < padded; ++l) {
+    const double r = live[l] * (d * cosine[l] + (f + rest * k[l]) * specular[l] - values[l]);
+    residual[l] = r;
+    square[l] += r * r;
+  }
+}
+
+LOBEFIT_CLONES
+void AddColumn(const Amplitudes& amplitudes, const double* __restrict dcosine, const double* __restrict dspecular,
+               const double* __restrict k, const double* __restrict residual, std::size_t padded,
+               double* __restrict column, double* __restrict row) {
+  const double d = amplitudes.diffuse, f = amplitudes.f0, rest = amplitudes.carried - amplitudes.f0;
+  for (std::size_t l = 0; l < padded; ++l) {
+    const double value = d * dcosine[l] + (f + rest * k[l]) * dspecular[l];
+    column[l] = value;
+    row[l] += residual[l] * value;
   }
 }
 

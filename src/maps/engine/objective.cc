@@ -26,6 +26,13 @@ double SumOfLog1p(const std::vector<double>& x, double factor, std::size_t padde
   return sum;
 }
 
+Amplitudes AmplitudesOf(const MapModel& model, const TexelData& data, const MapPoint& point, int channel) {
+  const auto c = static_cast<std::size_t>(channel);
+  // Without Schlick's term k is 0.
+  if (model.lobe == MapLobe::kNone) return {point.diffuse[c], 0, 0};
+  return {point.diffuse[c], point.f0[c], 1 / data.scale};
+}
+
 }  // namespace
 
 void BestAmplitudes(const AmplitudeSums& sums, double most_b, double* a, double* b) {
@@ -48,7 +55,7 @@ void TexelData::Resize(std::size_t padded) {
 
 void TexelObjective::Resize(std::size_t padded) {
   shape_.Resize(padded);
-  for (std::vector<double>* a : {&square_, &weight_, &bend_, &lobe_, &carried_, &weighted_}) a->resize(padded);
+  for (std::vector<double>* a : {&square_, &weight_, &bend_, &lobe_, &carried_, &weighted_, &zero_}) a->resize(padded);
   for (std::vector<double>& r : residual_) r.resize(padded);
   for (std::vector<double>& r : rows_) r.resize(padded);
   for (auto& channel : jacobian_) {
@@ -70,14 +77,9 @@ double TexelObjective::Residuals(const MapModel& model, const TexelData& data, c
   const bool lobe = model.lobe != MapLobe::kNone;
   std::fill(square_.begin(), square_.begin() + static_cast<std::ptrdiff_t>(lights.padded), 0.0);
   for (int c = 0; c < model.channels; ++c) {
-    const double d = point.diffuse[c], f0 = point.f0[c];
-    std::vector<double>& r = residual_[c];
-    for (std::size_t l = 0; l < lights.padded; ++l) {
-      double predicted = d * shape_.cosine[l];
-      if (lobe) predicted += f0 * lobe_[l] + carried_[l] * shape_.specular[l];
-      r[l] = lights.live[l] * (predicted - data.value[c][l]);
-      square_[l] += r[l] * r[l];
-    }
+    AddResiduals(AmplitudesOf(model, data, point, c), shape_.cosine.data(), lobe ? shape_.specular.data() : zero_.data(),
+                 lights.k.data(), lights.live.data(), data.value[c].data(), lights.padded, residual_[c].data(),
+                 square_.data());
   }
   const double cost = 0.5 * loss * loss * SumOfLog1p(square_, 1 / (loss * loss), lights.padded);
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
@@ -98,7 +100,7 @@ double TexelObjective::CostOfShape(const MapModel& model, const TexelData& data,
   AmplitudeSums sums[kMostChannels] = {};
   for (int a = 0; a < model.PerChannel(); ++a) {
     double* scaled = weighted_.data();
-    for (std::size_t l = 0; l < padded; ++l) scaled[l] = w[l] * (a == 0 ? A : B)[l];
+    Multiply(w, a == 0 ? A : B, padded, scaled);
     double carried = 0, products[2 + kMostChannels];
     const double* with[2 + kMostChannels] = {A, lobe ? B : A};
     for (int c = 0; c < model.channels; ++c) with[2 + c] = data.value[c].data();
@@ -138,31 +140,21 @@ double TexelObjective::Derivatives(const MapModel& model, const TexelData& data,
     std::vector<double>& v = rows_[j];
     std::fill(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(padded), 0.0);
     for (int c = 0; c < channels; ++c) {
-      const double d = point.diffuse[c], f0 = point.f0[c];
-      std::vector<double>& J = jacobian_[c][j];
-      const std::vector<double>&r = residual_[c], &ds = shape_.dspecular[j];
-      for (std::size_t l = 0; l < padded; ++l) {
-        double value = lobe ? (f0 * (1 - lights.k[l]) + carried_[l]) * ds[l] : 0;
-        if (j < 2) value += d * shape_.dcosine[j][l];
-        J[l] = value;
-        v[l] += r[l] * value;
-      }
+      AddColumn(AmplitudesOf(model, data, point, c), j < 2 ? shape_.dcosine[j].data() : zero_.data(),
+                lobe ? shape_.dspecular[j].data() : zero_.data(), lights.k.data(), residual_[c].data(), padded,
+                jacobian_[c][j].data(), v.data());
     }
   }
   for (int c = 0; c < channels; ++c) {
-    const std::vector<double>& r = residual_[c];
-    std::vector<double>&vd = rows_[model.DiffuseAt(c)], &vf = rows_[model.F0At(c)];
-    for (std::size_t l = 0; l < padded; ++l) vd[l] = r[l] * shape_.cosine[l];
-    for (std::size_t l = 0; lobe && l < padded; ++l) vf[l] = r[l] * lobe_[l];
+    Multiply(residual_[c].data(), shape_.cosine.data(), padded, rows_[model.DiffuseAt(c)].data());
+    if (lobe) Multiply(residual_[c].data(), lobe_.data(), padded, rows_[model.F0At(c)].data());
   }
   // The loss's part, bend (J^T r)(J^T r)^T, then each channel's w J^T J: amplitudes are the same functions in all.
   const double* rows[kMostUnknowns];
   for (int j = 0; j < unknowns; ++j) rows[j] = rows_[j].data();
   DotProducts(weight_.data(), rows, unknowns, padded, gradient->data());
   double* scaled = weighted_.data();
-  const auto weigh = [&](const double* by, const double* what) {
-    for (std::size_t l = 0; l < padded; ++l) scaled[l] = by[l] * what[l];
-  };
+  const auto weigh = [&](const double* by, const double* what) { Multiply(by, what, padded, scaled); };
   const bool bent = curvature != Curvature::kNone;
   for (int j = 0; j < unknowns; ++j) {
     std::fill((*hessian)[j].begin(), (*hessian)[j].end(), 0.0);

@@ -61,7 +61,7 @@ class TexelObjective {
   ShapeArrays shape_;
   std::vector<double> residual_[kMostChannels], square_, weight_, bend_;
   std::vector<double> lobe_, carried_;  // (1 - k) specular; k / scale
-  std::vector<double> jacobian_[kMostChannels][kMostShape], rows_[kMostUnknowns], weighted_;
+  std::vector<double> jacobian_[kMostChannels][kMostShape], rows_[kMostUnknowns], weighted_, zero_;
 };
 
 }  // namespace lobefit
