@@ -58,8 +58,8 @@ int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& s
   page.title = "One fit a texel: " + PrintableName(path.filename());
   std::size_t fitted, left_out;
   const double fitted_psnr = MeanPsnr(page.lights, true, &fitted), honest = MeanPsnr(page.lights, false, &left_out);
-  page.subtitle = fmt::format("{} lights, {} x {} texels; fitted lights are met to {:.1f} dB (mean)", stack.lights.size(),
-                              stack.width, stack.height, fitted_psnr);
+  page.subtitle = fmt::format("{} lights, {} x {} texels; fitted lights are met to {:.1f} dB (mean)",
+                              stack.lights.size(), stack.width, stack.height, fitted_psnr);
   page.subtitle += left_out > 0 ? fmt::format(", {} that were left out to {:.1f} dB", left_out, honest)
                                 : "; `maps --leave-out` shows how well a light is met that was not fitted";
   WriteMapsReport(maps, stack, page, scale, picture);
@@ -126,9 +126,11 @@ int DescribeStack(const std::filesystem::path& path, const StackOptions& options
                       stack.channels, EncodingWord(stack.response));
   text += fmt::format("  texels       {}{}\n", stack.Texels(), stack.mask.empty() ? "" : " within the mask");
   text += fmt::format("  lights       theta {:.1f} to {:.1f} degrees, distant\n", low, high);
-  text += fmt::format("  unit         {}\n", stack.calibrated ? "f_r cos_theta_i, 1/sr" : "one unknown factor of f_r cos_theta_i");
-  text += fmt::format("  dark         {:.1f} % of the values, below a tenth of the texel's 90th percentile: set aside as shadow\n",
-                      Share(dark, values));
+  text += fmt::format("  unit         {}\n",
+                      stack.calibrated ? "f_r cos_theta_i, 1/sr" : "one unknown factor of f_r cos_theta_i");
+  text += fmt::format(
+      "  dark         {:.1f} % of the values, below a tenth of the texel's 90th percentile: set aside as shadow\n",
+      Share(dark, values));
   text += fmt::format("  saturated    {:.2f} %\n", Share(saturated, values));
   if (negative + invalid > 0) text += fmt::format("  odd          {} negative, {} no number\n", negative, invalid);
   for (const std::string& remark : stack.remarks) text += "  note         " + remark + "\n";

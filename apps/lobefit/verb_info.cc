@@ -163,10 +163,10 @@ std::string ToText(const Measurement& measurement, const Description& descriptio
 std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
   auto options = std::make_shared<MeasurementOptions>();
   auto files = std::make_shared<std::vector<std::string>>();
-  app->add_option(
-         "FILE", *files,
-         "measurement files: one, or several and folders as one measurement; FILE:theta_i=30 states what a file lacks; or "
-         "an image stack")
+  app->add_option("FILE", *files,
+                  "measurement files: one, or several and folders as one measurement; FILE:theta_i=30 states what a "
+                  "file lacks; or "
+                  "an image stack")
       ->required();
   auto statistics = std::make_shared<bool>(false);
   app->add_flag("--statistics", *statistics,

@@ -72,7 +72,8 @@ int RunReport(const ReportVerb& verb, const CommonOptions& common) {
 std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<ReportVerb>();
   app->add_option("MATERIAL", verb->material, "a *.material.json, or NAME.maps.exr of `lobefit maps`")->required();
-  app->add_option("MEASUREMENT", verb->files, "the measurement that it was fitted to: one file, or several and folders; of maps, the image stack")
+  app->add_option("MEASUREMENT", verb->files,
+                  "the measurement that it was fitted to: one file, or several and folders; of maps, the image stack")
       ->required();
   app->add_option("--out", verb->out,
                   "the picture, or the folder for it (default: NAME.report.png beside the material)");

@@ -49,9 +49,10 @@ TEST_F(MapsVerb, AStackMadeFromMapsIsFittedToTheSameMaps) {
 }
 
 TEST_F(MapsVerb, ThreadsShardsAndMergeGiveTheSameBytes) {
-  ASSERT_EQ(Shell("lobefit synth hills --stack --size 40 --lights 24 --noise multiplicative=0.02,additive=0.001 --out s")
-                .exit_code,
-            0);
+  ASSERT_EQ(
+      Shell("lobefit synth hills --stack --size 40 --lights 24 --noise multiplicative=0.02,additive=0.001 --out s")
+          .exit_code,
+      0);
   ASSERT_EQ(Shell("lobefit maps s --out one --threads 1; lobefit maps s --out four --threads 4").exit_code, 0);
   EXPECT_EQ(Files(), (std::vector<std::string>{"four", "one", "s"}));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "one/s.maps.part"));

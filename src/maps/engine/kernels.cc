@@ -111,10 +111,10 @@ void IsotropicGradient(double alpha, const MapFrame& f, const LightArrays& light
     const double by_ci = per_c - over_c * (1 + c * (1 - a2) / s);
     by_alpha[l] = value * dlog_alpha + over_K * 2 * off * inverse - over_c * a2 * (1 - c * c) / s;
     const double lit = c > 0 ? 1.0 : 0.0;
-    by_t[l] = lit * (by_hz * (t.x * hx[l] + t.y * hy[l] + t.z * h_z[l]) + by_ci * (t.x * x[l] + t.y * y[l] + t.z * z[l]) +
-                     by_co * t.z);
-    by_b[l] = lit * (by_hz * (b.x * hx[l] + b.y * hy[l] + b.z * h_z[l]) + by_ci * (b.x * x[l] + b.y * y[l] + b.z * z[l]) +
-                     by_co * b.z);
+    by_t[l] = lit * (by_hz * (t.x * hx[l] + t.y * hy[l] + t.z * h_z[l]) +
+                     by_ci * (t.x * x[l] + t.y * y[l] + t.z * z[l]) + by_co * t.z);
+    by_b[l] = lit * (by_hz * (b.x * hx[l] + b.y * hy[l] + b.z * h_z[l]) +
+                     by_ci * (b.x * x[l] + b.y * y[l] + b.z * z[l]) + by_co * b.z);
   }
 }
 

@@ -77,9 +77,9 @@ double TexelObjective::Residuals(const MapModel& model, const TexelData& data, c
   const bool lobe = model.lobe != MapLobe::kNone;
   std::fill(square_.begin(), square_.begin() + static_cast<std::ptrdiff_t>(lights.padded), 0.0);
   for (int c = 0; c < model.channels; ++c) {
-    AddResiduals(AmplitudesOf(model, data, point, c), shape_.cosine.data(), lobe ? shape_.specular.data() : zero_.data(),
-                 lights.k.data(), lights.live.data(), data.value[c].data(), lights.padded, residual_[c].data(),
-                 square_.data());
+    AddResiduals(AmplitudesOf(model, data, point, c), shape_.cosine.data(),
+                 lobe ? shape_.specular.data() : zero_.data(), lights.k.data(), lights.live.data(),
+                 data.value[c].data(), lights.padded, residual_[c].data(), square_.data());
   }
   const double cost = 0.5 * loss * loss * SumOfLog1p(square_, 1 / (loss * loss), lights.padded);
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
@@ -88,6 +88,11 @@ double TexelObjective::Residuals(const MapModel& model, const TexelData& data, c
 double TexelObjective::Cost(const MapModel& model, const TexelData& data, const MapPoint& point, double loss) {
   Shape(model, data, point, false);
   return Residuals(model, data, point, loss);
+}
+
+void TexelObjective::Reweigh(const TexelData& data, double loss) {
+  const double inverse = 1 / (loss * loss);
+  for (std::size_t l = 0; l < data.lights.padded; ++l) weight_[l] = data.lights.live[l] / (1 + square_[l] * inverse);
 }
 
 double TexelObjective::CostOfShape(const MapModel& model, const TexelData& data, double loss, double most_f0,

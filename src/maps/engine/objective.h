@@ -39,6 +39,10 @@ class TexelObjective {
   // weights of the last call of Derivatives; they are stored in the point. Long curved valleys between width and f0 are
   // so left at one step.
   double CostOfShape(const MapModel& model, const TexelData& data, double loss, double most_f0, MapPoint* point);
+  // Weights of 1 for CostOfShape, as before the first call of Derivatives.
+  void ForgetWeights(const TexelData& data) { weight_ = data.lights.live; }
+  // Those of the loss at the residuals of the last cost.
+  void Reweigh(const TexelData& data, double loss);
   // How the loss bends the second derivatives: not at all, so that the quadratic lies above the cost of a linear model
   // (far from the minimum); clipped so that the matrix has no negative curvature (near it); or as it is (for errors).
   enum class Curvature { kNone, kClipped, kWhole };

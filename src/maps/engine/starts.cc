@@ -75,29 +75,4 @@ Vec3 HighlightNormal(const TexelData& data, const std::vector<double>& mean, con
   return AboveHorizon(sum, std::max(0.1, bounds.least_normal_z));
 }
 
-double SolveAmplitudes(const MapModel& model, const TexelData& data, double loss, MapPoint* point,
-                       TexelObjective* objective, ShapeArrays* shape) {
-  const LightArrays& lights = data.lights;
-  EvaluateShape(model.lobe, *point, lights, false, shape);
-  std::vector<double>& S = shape->specular;
-  for (int round = 0; round < 2; ++round) {
-    for (int c = 0; c < model.channels; ++c) {
-      double aa = 0, ab = 0, bb = 0, ay = 0, by = 0;
-      for (std::size_t l = 0; l < lights.count; ++l) {
-        const double s = (1 - lights.k[l]) * S[l], cosine = shape->cosine[l];
-        // Without what Schlick's term adds whatever f0 is.
-        const double y = data.value[c][l] - lights.k[l] / data.scale * S[l];
-        double w = 1;
-        if (round > 0) {
-          const double r = point->diffuse[c] * cosine + point->f0[c] * s - y;
-          w = 1 / (1 + r * r / (loss * loss));
-        }
-        aa += w * cosine * cosine, ab += w * cosine * s, bb += w * s * s, ay += w * cosine * y, by += w * s * y;
-      }
-      BestAmplitudes({aa, ab, bb, ay, by}, 1e300, &point->diffuse[c], &point->f0[c]);
-    }
-  }
-  return objective->Cost(model, data, *point, loss);
-}
-
 }  // namespace lobefit

@@ -18,9 +18,4 @@ MapPoint LambertStart(const MapModel& model, const TexelData& data, const std::v
 Vec3 HighlightNormal(const TexelData& data, const std::vector<double>& mean, const MapPoint& lambert,
                      const MapBounds& bounds);
 
-// Fills in the amplitudes of each channel that fit best without being negative, lights weighed by Cauchy's loss of the
-// residuals that the first answer leaves. Returns the cost.
-double SolveAmplitudes(const MapModel& model, const TexelData& data, double loss, MapPoint* point,
-                       TexelObjective* objective, ShapeArrays* shape);
-
 }  // namespace lobefit

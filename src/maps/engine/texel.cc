@@ -55,7 +55,6 @@ TexelFitter::TexelFitter(const MapRules& rules, const std::vector<Vec3>& lights,
   for (std::size_t l = 0; l < lights.size(); ++l) lights_.Set(l, lights[l], rules.schlick);
   data_.Resize(lights_.padded);
   objective_.Resize(lights_.padded);
-  shape_.Resize(lights_.padded);
   mean_.resize(lights_.padded);
 }
 
@@ -110,8 +109,11 @@ MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent&
       point.normal = normals[k];
       const double width = bounds_.width_held ? log_alpha : std::log(alpha);
       point.width = {width, 0, width};
-      const double cost = SolveAmplitudes(model, data_, rules_.loss, &point, &objective_, &shape_);
-      for (int c = 0; c < channels_; ++c) point.f0[c] = std::min(point.f0[c], bounds_.most_f0);
+      // Twice: what the first answer cannot meet, as a cast shadow, weighs less in the second.
+      objective_.ForgetWeights(data_);
+      objective_.CostOfShape(model, data_, rules_.loss, bounds_.most_f0, &point);
+      objective_.Reweigh(data_, rules_.loss);
+      const double cost = objective_.CostOfShape(model, data_, rules_.loss, bounds_.most_f0, &point);
       if (cost < costs[k]) costs[k] = cost, starts[k] = point;
       if (bounds_.width_held) break;
     }

@@ -71,7 +71,6 @@ class TexelFitter {
   LightArrays lights_;
   TexelData data_;
   TexelObjective objective_;
-  ShapeArrays shape_;
   MapBounds bounds_;
   std::vector<double> mean_, sorted_, all_means_;
   double slope_ = 0, curvature_ = 0;

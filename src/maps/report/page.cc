@@ -78,27 +78,31 @@ std::vector<Tile> MapTiles(const Maps& maps, const Stack& stack) {
     return w > 0 ? w : 1.0;
   };
   tiles.push_back({"Normal", NormalPicture(maps), std::nullopt, "x right: red, y up: green, z to the camera: blue"});
-  errors.push_back(Scalar(maps, MapPart::kErrors, "normal.angle_deg", "Error of the normal", "degrees, standard", true));
+  errors.push_back(
+      Scalar(maps, MapPart::kErrors, "normal.angle_deg", "Error of the normal", "degrees, standard", true));
   const double diffuse = white("diffuse.");
   tiles.push_back({"Diffuse", ColorPicture(maps, "diffuse.", diffuse), std::nullopt, Amount(stack, diffuse)});
   errors.push_back(Scalar(maps, MapPart::kErrors, gray ? "diffuse.Y" : "diffuse.G", "Error of diffuse",
                           gray ? "standard" : "green, standard", true));
   if (maps.lobe != MapLobe::kNone) {
     const double f0 = white("f0.");
-    tiles.push_back({"F0", ColorPicture(maps, "f0.", f0), std::nullopt, Amount(stack, f0) + "; white paper: not determined"});
-    errors.push_back(
-        Scalar(maps, MapPart::kErrors, gray ? "f0.Y" : "f0.G", "Error of F0", gray ? "standard" : "green, standard", true));
+    tiles.push_back(
+        {"F0", ColorPicture(maps, "f0.", f0), std::nullopt, Amount(stack, f0) + "; white paper: not determined"});
+    errors.push_back(Scalar(maps, MapPart::kErrors, gray ? "f0.Y" : "f0.G", "Error of F0",
+                            gray ? "standard" : "green, standard", true));
     const bool one = maps.lobe == MapLobe::kGgx;
     tiles.push_back(Scalar(maps, MapPart::kParameters, one ? "alpha" : "alpha_x", one ? "Alpha" : "Alpha, wide",
                            "width; white: not determined", false));
-    errors.push_back(Scalar(maps, MapPart::kErrors, one ? "ln_alpha" : "ln_alpha_x", "Error of ln alpha", "standard", true));
+    errors.push_back(
+        Scalar(maps, MapPart::kErrors, one ? "ln_alpha" : "ln_alpha_x", "Error of ln alpha", "standard", true));
   }
   while (tiles.size() % kColumns != 0) tiles.push_back({}), errors.push_back({});
   tiles.insert(tiles.end(), errors.begin(), errors.end());
   return tiles;
 }
 
-void AddPair(const Maps& maps, const Stack& stack, const MapsPage& page, const RelitLight& light, std::vector<Tile>* tiles) {
+void AddPair(const Maps& maps, const Stack& stack, const MapsPage& page, const RelitLight& light,
+             std::vector<Tile>* tiles) {
   const RelitPair pair = Relit(maps, stack, light.light, page.fallback);
   std::vector<float> finite;
   for (const float v : pair.photograph) {
@@ -109,8 +113,8 @@ void AddPair(const Maps& maps, const Stack& stack, const MapsPage& page, const R
   std::nth_element(finite.begin(), at, finite.end());
   const double white = std::max(static_cast<double>(*at), 1e-12);
   const char* kind = light.fitted ? "the worst light of the fit" : "a light that was not fitted";
-  tiles->push_back({fmt::format("Photograph {}", light.light + 1), PhotoPicture(pair.photograph, maps, white),
-                    std::nullopt, kind});
+  tiles->push_back(
+      {fmt::format("Photograph {}", light.light + 1), PhotoPicture(pair.photograph, maps, white), std::nullopt, kind});
   tiles->push_back({fmt::format("Fit, {:.1f} dB", light.psnr), PhotoPicture(pair.fit, maps, white), std::nullopt,
                     "under the same light, same exposure"});
 }

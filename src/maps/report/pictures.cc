@@ -61,7 +61,8 @@ cv::Mat ScalarPicture(const Maps& maps, MapPart part, const std::string& name, d
   return Picture(maps, [&](std::size_t t) {
     const auto v = static_cast<double>(plane[t]);
     if (std::isnan(v)) return kUnknown;
-    const double at = logarithmic ? std::log(std::max(v, 1e-30) / low) / std::log(high / low) : (v - low) / (high - low);
+    const double at =
+        logarithmic ? std::log(std::max(v, 1e-30) / low) / std::log(high / low) : (v - low) / (high - low);
     return SequentialColor(std::clamp(at, 0.0, 1.0));
   });
 }
