@@ -63,7 +63,7 @@ void ExpectCovered(const std::map<std::string, Held>& coverage, std::size_t fewe
   }
 }
 
-TEST(Coverage, OfGgx) { ExpectCovered(CoverageOf(MapLobe::kGgx, 112, LobeChoice::kByEvidence), 10000, 96.5); }
+TEST(Coverage, OfGgx) { ExpectCovered(CoverageOf(MapLobe::kGgx, 330, LobeChoice::kByEvidence), 100000, 96.5); }
 
 // With 11 unknowns few lights lie in a narrow lobe, and the jackknife over lights errs on the safe side (97 %).
 TEST(Coverage, OfAnisotropicGgxErrsOnTheSafeSide) {
