@@ -12,6 +12,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
 #include "lobefit/maps/output/previews.h"
 #include "lobefit/synthesis/random.h"
@@ -96,8 +97,10 @@ void WriteStack(const Maps& maps, const StackSynthesis& synthesis, const std::fi
   std::string lp = fmt::format("{}\n", synthesis.lights.size()), intensities;
   // One exposure for all images, as a camera with fixed settings has.
   double most = 0;
+  Progress progress("photographing", synthesis.lights.size() * (exr ? 1 : 2));
   for (std::size_t l = 0; !exr && l < synthesis.lights.size(); ++l) {
     for (const float value : Photograph(maps, synthesis, l)) most = std::max(most, static_cast<double>(value));
+    progress.Advance();
   }
   const double intensity = exr ? 1 : std::exp2(std::floor(std::log2(0.98 / most)));
   for (std::size_t l = 0; l < synthesis.lights.size(); ++l) {
@@ -106,6 +109,7 @@ void WriteStack(const Maps& maps, const StackSynthesis& synthesis, const std::fi
     lp += fmt::format("{} {} {} {}\n", name, FormatDouble(w.x), FormatDouble(w.y), FormatDouble(w.z));
     intensities += fmt::format("{0} {0} {0}\n", FormatDouble(intensity));
     const std::vector<float> image = Photograph(maps, synthesis, l);
+    progress.Advance();
     WriteFileAtomically(folder / name, exr ? EncodeExr(image, width, height, channels)
                                            : EncodeSixteen(image, intensity, width, height, channels));
   }
