@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "instrument_options.h"
 #include <CLI/CLI.hpp>
 
 #include "lobefit/measurement/measurement.h"
@@ -40,6 +41,7 @@ class RecipeOptions {
  private:
   std::string recipe_ = "auto";
   RecipeOverrides overrides_;
+  InstrumentOptions instrument_;
 };
 
 // Names of the recipes of the library, sorted.
@@ -53,6 +55,7 @@ class FittedModel {
 
  private:
   std::string recipe_, metric_;
+  InstrumentOptions instrument_;
 };
 
 // A recipe file, or a recipe of the library by its name ("ellipsoid"). Throws InputError that lists the names.

@@ -141,5 +141,29 @@ TEST(AutomaticRecipe, TakesWhatTheMeasurementDetermines) {
   EXPECT_FALSE(AutomaticRecipe({}).reason.empty());
 }
 
+TEST(Recipe, ReadsTheInstrument) {
+  const std::string lobe = "[[lobe]]\nndf = \"ggx\"\n";
+  const Recipe recipe = ParseRecipe(lobe + "[instrument]\nsource = 2\ndetector = 1.5\nmean = \"plain\"\n", "r.toml");
+  EXPECT_DOUBLE_EQ(*recipe.instrument.source, DegreesToRadians(2));
+  EXPECT_DOUBLE_EQ(recipe.aperture().detector, DegreesToRadians(1.5));
+  EXPECT_EQ(recipe.aperture().mean, ApertureMean::kPlain);
+  const Recipe again = ParseRecipe(ToToml(recipe), "again.toml");
+  EXPECT_DOUBLE_EQ(*again.instrument.detector, *recipe.instrument.detector);
+  EXPECT_EQ(again.instrument.mean, recipe.instrument.mean);
+  EXPECT_FALSE(ParseRecipe(lobe, "r.toml").aperture().any());
+  const auto message = [&](const std::string& section) -> std::string {
+    try {
+      ParseRecipe(lobe + section, "r.toml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_THAT(message("[instrument]\nsource = 90\n"), testing::HasSubstr("r.toml:4: source = 90: the half angle"));
+  EXPECT_THAT(message("[instrument]\ndetector = -1\n"), testing::HasSubstr("must lie in [0, 30]"));
+  EXPECT_THAT(message("[instrument]\nmean = \"median\"\n"), testing::HasSubstr("allowed: flux, plain"));
+  EXPECT_THAT(message("[instrument]\naperture = 2\n"), testing::HasSubstr("allowed: source, detector, mean"));
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <utility>
 
 #include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/diffuse_facets.h"
 #include "lobefit/core/brdf/lobe.h"
+#include "lobefit/core/instrument/misalignment.h"
 #include "lobefit/fit/objective/kernel_arrays.h"
 
 namespace lobefit {
@@ -18,12 +21,30 @@ namespace {
 // 256 samples: the columns of one channel of a one-lobe model take 16 KB, half of a first-level cache.
 constexpr std::size_t kBlock = 256;
 
+// Axes of the nominal frame in that of a sample which is crooked by `e` on a stage at azimuth `z`.
+class TurnedAxes {
+ public:
+  TurnedAxes(const Misalignment& e, double z) {
+    const double c = std::cos(z), s = std::sin(z);
+    const auto turned = [](const Vec3& w, double cosine, double sine) {
+      return Vec3{cosine * w.x - sine * w.y, sine * w.x + cosine * w.y, w.z};
+    };
+    const Vec3 nominal[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (std::size_t k = 0; k < 3; ++k) axes_[k] = turned(lobefit::InSampleFrame(e, turned(nominal[k], c, s)), c, -s);
+  }
+  Vec3 InSampleFrame(const Vec3& w) const { return w.x * axes_[0] + w.y * axes_[1] + w.z * axes_[2]; }
+
+ private:
+  Vec3 axes_[3];
+};
+
 // One block of samples: the model's values, residuals and columns. Arrays of kBlock, padded so that pads add nothing to
 // any sum.
 class Block {
  public:
-  Block(const KernelSamples& samples, const KernelModel& model, bool gradient)
-      : samples_(samples), model_(model), gradient_(gradient) {
+  // `slopes`: the derivatives by the gains, which need none of the model's; `gradient` includes them.
+  Block(const KernelSamples& samples, const KernelModel& model, bool gradient, bool slopes = false)
+      : samples_(samples), model_(model), gradient_(gradient), slopes_(slopes || gradient) {
     const std::size_t lobes = model.lobes.size(), channels = model.channels;
     for (const KernelLobe& lobe : model.lobes) {
       first_fresnel_.push_back(fresnel_size_);
@@ -36,6 +57,8 @@ class Block {
     const std::size_t facets = model.diffuse_kind == Diffuse::kMicrofacet && lobes > 0 ? model.lobes[0].columns : 0;
     const bool directional = IsDirectional(model.diffuse_kind) && !model.diffuse.empty();
     const std::size_t diffuse_size = model.diffuse.empty() ? 0 : DiffuseParameters(model.diffuse_kind);
+    means_ = std::any_of(model.lobes.begin(), model.lobes.end(),
+                         [](const KernelLobe& lobe) { return lobe.mean != nullptr; });
     const bool linear = std::all_of(model.lobes.begin(), model.lobes.end(), IsLinear);
     // Arrays, and how many blocks each needs, in one piece of memory: a fit of 200 samples is made of passes that take
     // 5 us.
@@ -44,6 +67,8 @@ class Block {
         {&gradients_, gradient ? shape_size_ : 0},
         {&contracted_, gradient ? contracted_size_ + facets : 0},
         {&cos_d_, lobes},
+        {&argument_gradients_, means_ && gradient ? shape_size_ : 0},
+        {&argument_contracted_, means_ && gradient ? contracted_size_ : 0},
         {&diffuse_, directional ? channels : 1},
         {&diffuse_gradient_, directional && gradient ? channels * diffuse_size : 0},
         {&sqrt_weight_, 1},
@@ -52,9 +77,16 @@ class Block {
         {&ones_, 1},
         {&factor_, linear ? 0 : channels * lobes},
         {&factor_gradient_, linear ? 0 : channels * fresnel_size_},
+        {&factor_by_argument_, linear || !means_ ? 0 : channels * lobes},
         {&f_, channels},
         {&residual_, channels},
-        {&slope_, gradient ? channels : 0},
+        {&slope_, slopes_ ? channels : 0},
+        {&moved_, model.alignment.angles.empty() ? 0 : 6},
+        {&by_angle_, gradient ? model.alignment.angles.size() * channels : 0},
+        {&gain_, model.gains ? 1 : 0},
+        {&gain_column_, model.gains && slopes_ ? channels : 0},
+        {&inverse_cos_i_, model.offset.empty() ? 0 : 1},
+        {&reading_slope_, model.offset.empty() || !gradient ? 0 : channels},
         {&columns_, gradient ? model.columns() : 0},
     };
     std::size_t blocks = 0;
@@ -64,6 +96,17 @@ class Block {
     for (const auto& [array, count] : arrays) {
       *array = {next, count * kBlock};
       next += count * kBlock;
+    }
+    if (!model.alignment.angles.empty()) {
+      if (gradient) {
+        straight_ = std::make_unique<KernelModel>(model);
+        straight_->alignment = {};
+        straight_->gains = false;
+        straight_->offset.clear();
+        for (std::size_t k = 0; k < 6; ++k) moved_samples_.direction[k] = moved_.data() + k * kBlock;
+        moved_samples_.count = kBlock;
+        probe_ = std::make_unique<Block>(moved_samples_, *straight_, false);
+      }
     }
     std::fill(diffuse_.begin(), diffuse_.end(), kInvPi);
     std::fill(ones_.begin(), ones_.end(), 1.0);
@@ -82,13 +125,19 @@ class Block {
                                &directions.wo_x, &directions.wo_y, &directions.wo_z};
     for (std::size_t k = 0; k < 6; ++k) *fields[k] = samples_.direction[k] + begin;
     directions.count = count;
+    // The irradiance is the nominal one, however the sample stands.
     cos_i_ = Padded(directions.wi_z, 0.0, &cos_i_pad_);
+    if (!model_.alignment.angles.empty()) {
+      if (gradient_) DifferenceAngles(begin);
+      MoveDirections(begin, model_.alignment.angles);
+      for (std::size_t k = 0; k < 6; ++k) *fields[k] = moved_.data() + k * kBlock;
+    }
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) EvaluateLobe(l, directions);
     for (std::size_t c = 0; c < directional_.size(); ++c) EvaluateDiffuse(c, directions);
     if (facets_) {
       facets_->Evaluate(directions, diffuse_.data(), gradient_ ? gradients_.data() : nullptr);
       std::fill(diffuse_.begin() + static_cast<std::ptrdiff_t>(count_), diffuse_.end(), 0.0);
-      if (gradient_) ContractGradients(0, diffuse_contracted());
+      if (gradient_) ContractGradients(0, gradients_.data(), diffuse_contracted());
     }
     for (std::size_t c = 0; c < model_.channels; ++c) {
       double* f = f_.data() + c * kBlock;
@@ -103,6 +152,8 @@ class Block {
         arrays::AddFactor(specular_.data() + l * kBlock, factor.constant, factor.slope, factor.array, padded_, f);
       }
     }
+    if (model_.gains) ApplyGains(begin);
+    if (!model_.offset.empty()) AddOffset();
   }
 
   // Residuals (and slopes), reweighted by the loss. Returns the sum of rho.
@@ -111,13 +162,14 @@ class Block {
     for (std::size_t c = 0; c < model_.channels; ++c) {
       const double* measured = Padded(samples_.measured[c] + begin, 1.0, &measured_pad_);
       lobefit::Residuals(model_.transform, f_.data() + c * kBlock, cos_i_, measured, sqrt_weight, padded_,
-                         residual_.data() + c * kBlock, gradient_ ? slope_.data() + c * kBlock : nullptr);
+                         residual_.data() + c * kBlock, slopes_ ? slope_.data() + c * kBlock : nullptr);
     }
     double sum = 0;
     if (model_.loss == Loss::kNone) {
       for (std::size_t c = 0; c < model_.channels; ++c)
         sum += arrays::SumOfSquares(residual_.data() + c * kBlock, padded_);
       *sum_robust_weight += static_cast<double>(count_);
+      if (model_.gains && slopes_) FinishGains();
       return sum;
     }
     for (std::size_t i = 0; i < count_; ++i) {
@@ -129,9 +181,10 @@ class Block {
       const double root = std::sqrt(loss.first);
       for (std::size_t c = 0; c < model_.channels; ++c) {
         residual_[c * kBlock + i] *= root;
-        if (gradient_) slope_[c * kBlock + i] *= root;
+        if (slopes_) slope_[c * kBlock + i] *= root;
       }
     }
+    if (model_.gains && slopes_) FinishGains();
     return sum;
   }
 
@@ -145,8 +198,11 @@ class Block {
       arrays::ShapeColumn(slope, factor.constant, factor.slope, factor.array, contracted(l),
                           facets ? model_.diffuse[c] : 0.0, facets ? diffuse_contracted() : nullptr,
                           model_.lobes[l].columns, padded_, kBlock, to);
+      if (model_.lobes[l].mean != nullptr) AddArgumentColumns(l, c, to);
       to += model_.lobes[l].columns * kBlock;
     }
+    for (std::size_t k = 0; k < model_.alignment.angles.size(); ++k, to += kBlock)
+      arrays::Multiply(slope, by_angle_.data() + (k * model_.channels + c) * kBlock, padded_, to);
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
       for (std::size_t k = 0; k < FresnelParameters(model_.lobes[l].kind.fresnel); ++k, to += kBlock) {
         arrays::Product(slope, specular_.data() + l * kBlock, FactorGradient(l, k, c), padded_, to);
@@ -158,23 +214,157 @@ class Block {
       arrays::Multiply(slope, diffuse_.data(), padded_, to);
       to += kBlock;
     }
+    if (!model_.offset.empty()) {
+      // By the reading, which a gain does not scale.
+      const double* by_reading = model_.gains ? reading_slope_.data() + c * kBlock : slope;
+      arrays::Multiply(by_reading, inverse_cos_i_.data(), padded_, to);
+      to += kBlock;
+    }
+    if (model_.gains) {
+      std::copy_n(gain_column_.data() + c * kBlock, padded_, to);
+      to += kBlock;
+    }
     std::copy_n(residual_.data() + c * kBlock, padded_, to);
     return columns_.data();
   }
+
+  // Adds products of a gain's column with `count` columns, kBlock apart, to the sums of its group, run by run of
+  // samples of one group. `sums`: where those of a group are.
+  template <class SumsOf>
+  void AddGainProducts(std::size_t begin, std::size_t c, const double* columns, std::size_t count,
+                       const SumsOf& sums_of) const {
+    const double* gain = gain_column_.data() + c * kBlock;
+    for (std::size_t i = 0; i < count_;) {
+      const std::uint32_t group = samples_.gain_group[begin + i];
+      std::size_t j = i + 1;
+      while (j < count_ && samples_.gain_group[begin + j] == group) ++j;
+      double* sums = sums_of(group);
+      for (std::size_t k = 0; k < count; ++k)
+        sums[k] += std::inner_product(gain + i, gain + j, columns + k * kBlock + i, 0.0);
+      i = j;
+    }
+  }
+  const double* gain_column(std::size_t c) const { return gain_column_.data() + c * kBlock; }
+  const double* residual(std::size_t c) const { return residual_.data() + c * kBlock; }
 
   std::size_t padded() const { return padded_; }
   const double* f(std::size_t c) const { return f_.data() + c * kBlock; }
 
  private:
+  // The directions of this block in the frame of the sample.
+  void MoveDirections(std::size_t begin, const std::vector<double>& angles) {
+    constexpr double kLeastCosine = 1e-4;
+    const std::vector<double>& azimuths = model_.alignment.azimuths;
+    std::vector<TurnedAxes> turns;
+    for (std::size_t t = 0; t < azimuths.size(); ++t)
+      turns.emplace_back(Misalignment{angles[0], angles[1], t == 0 ? 0.0 : angles[t + 1]}, azimuths[t]);
+    for (std::size_t side = 0; side < 6; side += 3) {
+      for (std::size_t i = 0; i < count_; ++i) {
+        const TurnedAxes& turn = turns[samples_.turn == nullptr ? 0 : samples_.turn[begin + i]];
+        const std::size_t at = begin + i;
+        Vec3 w = turn.InSampleFrame(
+            {samples_.direction[side][at], samples_.direction[side + 1][at], samples_.direction[side + 2][at]});
+        // Tilted below its own horizon the sample would see nothing.
+        w.z = std::max(w.z, kLeastCosine);
+        const double all[3] = {w.x, w.y, w.z};
+        for (std::size_t k = 0; k < 3; ++k) moved_[(side + k) * kBlock + i] = all[k];
+      }
+    }
+  }
+
+  // Central differences of f_r by the angles.
+  void DifferenceAngles(std::size_t begin) {
+    // Of a lobe 0.01 wide off by 1e-8 of the derivative; rounding adds 1e-10.
+    constexpr double kStep = 2e-6;
+    for (std::size_t k = 0; k < model_.alignment.angles.size(); ++k) {
+      for (const double sign : {1.0, -1.0}) {
+        std::vector<double> angles = model_.alignment.angles;
+        angles[k] += sign * kStep;
+        MoveDirections(begin, angles);
+        probe_->Evaluate(0, count_);
+        for (std::size_t c = 0; c < model_.channels; ++c) {
+          double* to = by_angle_.data() + (k * model_.channels + c) * kBlock;
+          if (sign > 0) {
+            std::copy_n(probe_->f(c), padded_, to);
+          } else {
+            for (std::size_t i = 0; i < padded_; ++i) to[i] = (to[i] - probe_->f(c)[i]) / (2 * kStep);
+          }
+        }
+      }
+    }
+  }
+
+  // The reading f_r cos_theta_i is too high by the offset.
+  void AddOffset() {
+    std::fill(inverse_cos_i_.begin(), inverse_cos_i_.end(), 0.0);
+    for (std::size_t i = 0; i < count_; ++i) inverse_cos_i_[i] = 1 / cos_i_[i];
+    for (std::size_t c = 0; c < model_.channels; ++c)
+      arrays::AddScaled(inverse_cos_i_.data(), model_.offset[c], padded_, f_.data() + c * kBlock);
+  }
+
+  // What the instrument makes of f_r: the reading is g f_r.
+  void ApplyGains(std::size_t begin) {
+    std::fill(gain_.begin(), gain_.end(), 1.0);
+    for (std::size_t i = 0; samples_.gain != nullptr && i < count_; ++i)
+      gain_[i] = samples_.gain[samples_.gain_group[begin + i]];
+    for (std::size_t c = 0; c < model_.channels; ++c) {
+      double* f = f_.data() + c * kBlock;
+      arrays::Multiply(gain_.data(), f, padded_, f);
+    }
+  }
+
+  // The columns of the gains' logarithms, and slopes by f_r in place of those by the reading.
+  void FinishGains() {
+    for (std::size_t c = 0; c < model_.channels; ++c) {
+      double *slope = slope_.data() + c * kBlock, *column = gain_column_.data() + c * kBlock;
+      arrays::Multiply(slope, f_.data() + c * kBlock, padded_, column);
+      if (!model_.offset.empty()) {
+        // An offset is not scaled by the gain.
+        for (std::size_t i = 0; i < padded_; ++i) column[i] -= slope[i] * model_.offset[c] * inverse_cos_i_[i];
+        if (gradient_) std::copy_n(slope, padded_, reading_slope_.data() + c * kBlock);
+      }
+      arrays::Multiply(gain_.data(), slope, padded_, slope);
+    }
+  }
+
   void EvaluateLobe(std::size_t l, const DirectionArrays& directions) {
     const KernelLobe& lobe = model_.lobes[l];
-    double* specular = specular_.data() + l * kBlock;
-    double* cos_d = cos_d_.data() + l * kBlock;
-    SpecularLobe(directions, lobe.kind, lobe.shape, specular, cos_d, gradient_ ? gradients_.data() : nullptr);
+    double *specular = specular_.data() + l * kBlock, *argument = cos_d_.data() + l * kBlock;
+    double* gradients = gradient_ ? gradients_.data() : nullptr;
+    if (lobe.mean != nullptr) {
+      MeanLobe(directions, lobe.kind, lobe.shape, *lobe.mean,
+               {specular, argument, gradients, gradient_ ? argument_gradients_.data() : nullptr});
+      if (gradient_) ContractGradients(l, argument_gradients_.data(), argument_contracted(l));
+    } else {
+      SpecularLobe(directions, lobe.kind, lobe.shape, specular, argument, gradients);
+    }
     std::fill(specular + count_, specular + padded_, 0.0);
-    std::fill(cos_d + count_, cos_d + padded_, 1.0);
-    if (IsLinear(lobe)) arrays::Schlick(cos_d, padded_, p5_.data() + l * kBlock, one_minus_p5_.data() + l * kBlock);
-    if (gradient_) ContractGradients(l, contracted(l));
+    std::fill(argument + count_, argument + padded_, 1.0);
+    if (IsLinear(lobe)) FinishArgument(l);
+    if (gradient_) ContractGradients(l, gradients, contracted(l));
+  }
+
+  // What linear Fresnel factors need of their argument: its power, at a point of the cosine, of a mean as it came.
+  void FinishArgument(std::size_t l) {
+    double *argument = cos_d_.data() + l * kBlock, *p5 = p5_.data() + l * kBlock,
+           *rest = one_minus_p5_.data() + l * kBlock;
+    if (model_.lobes[l].mean == nullptr) return arrays::Schlick(argument, padded_, p5, rest);
+    std::copy_n(argument, padded_, p5);
+    for (std::size_t i = 0; i < padded_; ++i) rest[i] = 1 - p5[i];
+  }
+
+  // The shape moves the Fresnel factor of a mean too: to[k] += slope specular dF/d(argument) d(argument)/d(shape k).
+  void AddArgumentColumns(std::size_t l, std::size_t c, double* to) {
+    const KernelLobe& lobe = model_.lobes[l];
+    const bool is_linear = IsLinear(lobe);
+    if (lobe.kind.fresnel == Fresnel::kNone) return;
+    const double* by_argument =
+        is_linear ? nullptr : factor_by_argument_.data() + (c * model_.lobes.size() + l) * kBlock;
+    for (std::size_t k = 0; k < lobe.columns; ++k) {
+      arrays::AddArgumentColumn(slope_.data() + c * kBlock, specular_.data() + l * kBlock,
+                                is_linear ? LinearFactor(l, c).slope : 1.0, by_argument,
+                                argument_contracted(l) + k * kBlock, padded_, to + k * kBlock);
+    }
   }
 
   void EvaluateDiffuse(std::size_t c, const DirectionArrays& d) {
@@ -190,10 +380,9 @@ class Block {
       std::fill(diffuse_gradient(c, k) + count_, diffuse_gradient(c, k) + padded_, 0.0);
   }
 
-  // gradients_, by slope coordinates, to the solver's coordinates of lobe l. They were written with a stride of
-  // `count_`: the last, shorter block is spread to kBlock first.
-  void ContractGradients(std::size_t l, double* to) {
-    double* gradients = gradients_.data();
+  // Gradients by slope coordinates to the solver's coordinates of lobe l. They were written with a stride of `count_`:
+  // the last, shorter block is spread to kBlock first.
+  void ContractGradients(std::size_t l, double* gradients, double* to) {
     const std::size_t size = ShapeParameters(model_.lobes[l].kind);
     for (std::size_t j = size; j-- > 0 && count_ < kBlock;) {
       std::copy_backward(gradients + j * count_, gradients + (j + 1) * count_, gradients + j * kBlock + count_);
@@ -215,8 +404,11 @@ class Block {
     double* value = factor_.data() + (c * model_.lobes.size() + l) * kBlock;
     for (std::size_t i = 0; i < padded_; ++i) {
       double dF[kMaxFresnelParameters];
+      double* by_argument = gradient_ && lobe.mean != nullptr
+                                ? &factor_by_argument_[(c * model_.lobes.size() + l) * kBlock + i]
+                                : nullptr;
       value[i] = FresnelFactor(lobe.kind.fresnel, lobe.fresnel.data() + c * size, cos_d_[l * kBlock + i],
-                               gradient_ ? dF : nullptr);
+                               gradient_ ? dF : nullptr, by_argument);
       for (std::size_t k = 0; gradient_ && k < size; ++k) factor_gradient(c, first_fresnel_[l] + k)[i] = dF[k];
     }
     return {0, 1, value};
@@ -243,6 +435,7 @@ class Block {
     return factor_gradient_.data() + (c * fresnel_size_ + k) * kBlock;
   }
   double* contracted(std::size_t l) { return contracted_.data() + first_contracted_[l] * kBlock; }
+  double* argument_contracted(std::size_t l) { return argument_contracted_.data() + first_contracted_[l] * kBlock; }
   double* diffuse_contracted() { return contracted_.data() + contracted_size_ * kBlock; }
   double* diffuse_gradient(std::size_t c, std::size_t k) {
     return diffuse_gradient_.data() + (c * DiffuseParameters(model_.diffuse_kind) + k) * kBlock;
@@ -277,7 +470,7 @@ class Block {
 
   const KernelSamples& samples_;
   const KernelModel& model_;
-  const bool gradient_;
+  const bool gradient_, slopes_;
   std::size_t count_ = 0, padded_ = 0;
   const double* cos_i_ = nullptr;
   std::optional<DiffuseFacets> facets_;
@@ -288,9 +481,18 @@ class Block {
   std::size_t fresnel_size_ = 0;                 // of all lobes
   std::vector<std::size_t> first_fresnel_;       // of each lobe
   std::unique_ptr<double[]> memory_;
+  bool means_ = false;  // some lobe is averaged over the instrument's discs
+  // cos_d_: of each lobe's pair; of a mean its Fresnel argument.
   std::span<double> specular_, gradients_, contracted_, cos_d_, p5_, one_minus_p5_, ones_, factor_, factor_gradient_,
       diffuse_, diffuse_gradient_;
-  std::span<double> f_, residual_, slope_, columns_, sqrt_weight_;
+  std::span<double> argument_gradients_, argument_contracted_, factor_by_argument_;
+  std::span<double> f_, residual_, slope_, columns_, sqrt_weight_, gain_, gain_column_, inverse_cos_i_, reading_slope_;
+  // Of the alignment: directions in the sample's frame, derivatives of f_r by its angles [angle][channel], and the model
+  // without instrument that gives them.
+  std::span<double> moved_, by_angle_;
+  KernelSamples moved_samples_ = {};
+  std::unique_ptr<KernelModel> straight_;
+  std::unique_ptr<Block> probe_;
   std::vector<double> cos_i_pad_, cos_o_pad_, measured_pad_;
 };
 
@@ -299,11 +501,12 @@ class Block {
 std::size_t KernelModel::shape_columns() const {
   std::size_t sum = 0;
   for (const KernelLobe& lobe : lobes) sum += lobe.columns;
-  return sum;
+  return sum + alignment.angles.size();
 }
 
 std::size_t KernelModel::columns() const {
-  std::size_t sum = shape_columns() + (diffuse.empty() ? 0 : DiffuseParameters(diffuse_kind)) + 1;
+  std::size_t sum = shape_columns() + (diffuse.empty() ? 0 : DiffuseParameters(diffuse_kind)) +
+                    (offset.empty() ? 0 : 1) + (gains ? 1 : 0) + 1;
   for (const KernelLobe& lobe : lobes) sum += FresnelParameters(lobe.kind.fresnel);
   return sum;
 }
@@ -314,11 +517,38 @@ void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gra
   const std::size_t columns = model.columns();
   if (gradient && sums->gram.empty())
     sums->gram.assign(model.channels, std::vector<double>(columns * (columns + 1) / 2, 0.0));
+  const bool arrows = gradient && model.gains && samples.gain != nullptr;
+  std::unordered_map<std::uint32_t, std::size_t> place;
   for (std::size_t i = begin; i < end; i += kBlock) {
     block.Evaluate(i, std::min(kBlock, end - i));
     sums->sum_rho += block.Residuals(i, &sums->sum_robust_weight);
     for (std::size_t c = 0; gradient && c < model.channels; ++c) {
-      arrays::AddGram(block.Columns(c), columns, block.padded(), kBlock, sums->gram[c].data());
+      const double* from = block.Columns(c);
+      arrays::AddGram(from, columns, block.padded(), kBlock, sums->gram[c].data());
+      if (!arrows) continue;
+      block.AddGainProducts(i, c, from, columns, [&](std::uint32_t group) {
+        const auto [found, is_new] = place.try_emplace(group, sums->arrows.size());
+        if (is_new) sums->arrows.push_back({group, std::vector<double>(model.channels * columns, 0.0)});
+        return sums->arrows[found->second].products.data() + c * columns;
+      });
+    }
+  }
+}
+
+void SumGains(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+              GainSums* sums) {
+  Block block(samples, model, false, true);
+  double unused = 0;
+  for (std::size_t i = begin; i < end; i += kBlock) {
+    block.Evaluate(i, std::min(kBlock, end - i));
+    sums->sum_of_squares += block.Residuals(i, &unused);
+    for (std::size_t c = 0; c < model.channels; ++c) {
+      block.AddGainProducts(i, c, block.gain_column(c), 1, [&](std::uint32_t g) { return &sums->curvature[g]; });
+      block.AddGainProducts(i, c, block.residual(c), 1, [&](std::uint32_t g) { return &sums->slope[g]; });
+      for (std::size_t k = 0; k < block.padded(); ++k) {
+        const double product = block.gain_column(c)[k] * block.residual(c)[k];
+        sums->weighted_squares += product * product;
+      }
     }
   }
 }

@@ -214,5 +214,25 @@ TEST(Csv, ANoiseFloorIsTheUncertaintyOfEveryReading) {
   EXPECT_EQ(m.conventions.at("noise-floor"), "0.01 (option)");
 }
 
+TEST(Csv, KeysStateTheInstrument) {
+  const std::string row = "theta_i,phi_i,theta_o,phi_o,Y\n10,0,20,0,1\n";
+  const Measurement stated = Read("# source: 2\n# detector = 1.5 deg\n# mean: plain\n" + row);
+  EXPECT_DOUBLE_EQ(*stated.instrument.source, DegreesToRadians(2));
+  EXPECT_DOUBLE_EQ(*stated.instrument.detector, DegreesToRadians(1.5));
+  EXPECT_TRUE(*stated.instrument.plain_mean);
+  // Prose that begins with the same words.
+  const Measurement prose = Read("# source: xenon lamp\n# detector: InGaAs\n# mean: of 3 scans\n" + row);
+  EXPECT_FALSE(prose.instrument.source || prose.instrument.detector || prose.instrument.plain_mean);
+  try {
+    Read("# detector: 95\n" + row);
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(
+        std::string(error.what()).find("detector is '95'; the half angle of its disc is allowed, 0 to 30 degrees"),
+        std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace lobefit
