@@ -163,6 +163,28 @@ TEST(Recipe, ReadsTheInstrument) {
   EXPECT_THAT(message("[instrument]\ndetector = -1\n"), testing::HasSubstr("must lie in [0, 30]"));
   EXPECT_THAT(message("[instrument]\nmean = \"median\"\n"), testing::HasSubstr("allowed: flux, plain"));
   EXPECT_THAT(message("[instrument]\naperture = 2\n"), testing::HasSubstr("allowed: source, detector, mean"));
+  EXPECT_THAT(message("[instrument]\ndrift = \"often\"\n"), testing::HasSubstr("drift is \"auto\" or the relative"));
+  EXPECT_THAT(message("[instrument]\ndrift = 0\n"), testing::HasSubstr("in (0, 1]"));
+  EXPECT_THAT(message("[instrument]\nalignment = { prior_deg = 9 }\n"), testing::HasSubstr("must lie in (0, 5]"));
+  EXPECT_THAT(message("[instrument]\nnoise = { floor = 0.1 }\n"), testing::HasSubstr("noise is written as"));
+  EXPECT_THAT(message("[instrument]\noffset = 1\n"), testing::HasSubstr("true or false"));
+}
+
+TEST(Recipe, ReadsWhatAnInstrumentDoesBesidesAveraging) {
+  const Recipe read = ParseRecipe(
+      "[[lobe]]\nndf = \"ggx\"\n[instrument]\ndrift = 0.03\nalignment = { prior_deg = 0.5 }\noffset = true\n"
+      "noise = { floor = 0.002, relative = 0.04 }\n",
+      "r.toml");
+  for (const Recipe& recipe : {read, ParseRecipe(ToToml(read), "again.toml")}) {
+    EXPECT_EQ(recipe.instrument.drift->sd, 0.03);
+    EXPECT_DOUBLE_EQ(recipe.instrument.alignment->prior, DegreesToRadians(0.5));
+    EXPECT_TRUE(recipe.instrument.offset);
+    EXPECT_EQ(recipe.noise.floor, 0.002);
+    EXPECT_EQ(recipe.noise.relative, 0.04);
+  }
+  const Recipe estimated = ParseRecipe("[[lobe]]\nndf = \"ggx\"\n[instrument]\ndrift = \"auto\"\n", "r.toml");
+  ASSERT_TRUE(estimated.instrument.drift);
+  EXPECT_FALSE(estimated.instrument.drift->sd);
 }
 
 }  // namespace
