@@ -11,7 +11,9 @@
 #include "lobefit/base/file.h"
 #include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
+#include "lobefit/fit/instrument.h"
 #include "lobefit/fit/ladder.h"
+#include "lobefit/fit/last_descent.h"
 #include "lobefit/fit/sel/sampling.h"
 #include "lobefit/io/series.h"
 #include "lobefit/material/json.h"
@@ -64,10 +66,12 @@ FittedFile FitFile(const FitFileOptions& options, const std::vector<std::string>
     Progress progress("models", kMostTried);
     FitOptions judged = fit;
     judged.on_tried = [&progress] { progress.Advance(); };
-    LadderChoice choice = ClimbLadder(recipe, judged, &fitted.measurement);
+    const Recipe through = ThroughInstrument(recipe, fitted.measurement);
+    LadderChoice choice = ClimbLadder(WithoutLastDescent(through), judged, &fitted.measurement);
     recipe = std::move(choice.recipe);
     if (choice.warm) fit.scouting_steps = kScoutingSteps;
     if (choice.warm) fit.starts = std::min<std::size_t>(fit.starts, 2);
+    recipe.instrument = through.instrument;
     tried = std::move(choice.tried);
   }
   fitted.material = FitRecipe(recipe, fit, &fitted.measurement);

@@ -102,12 +102,14 @@ void RecipeOptions::AddTo(CLI::App* app) {
                   "a recipe by name or a .toml file; 'auto' (default) takes what the measurement can determine")
       ->group(group);
   overrides_.AddTo(app, group);
+  instrument_.AddTo(app);
 }
 
 Recipe RecipeOptions::Choose(const Measurement& measurement) const {
   Recipe recipe = recipe_ == "auto" ? ChooseAutomatically(measurement) : LoadRecipe(recipe_);
   recipe.plane_azimuth = TraitsOf(measurement).plane_azimuth;
   overrides_.Apply(&recipe);
+  instrument_.Apply(&recipe);
   return recipe;
 }
 
@@ -121,12 +123,15 @@ void FittedModel::AddTo(CLI::App* app) {
   const std::string group = "What to fit";
   app->add_option("--recipe", recipe_, "a recipe by name or a .toml file (default: the truth's model)")->group(group);
   app->add_option("--metric", metric_, "overrides the recipe: " + Join(Names(MetricChoices())))->group(group);
+  // The mean is that of the synthetic readings.
+  instrument_.AddTo(app, false);
 }
 
 Recipe FittedModel::Choose(const Model& truth) const {
   Recipe recipe = recipe_.empty() ? DefaultRecipe(truth, "model of the truth") : LoadRecipe(recipe_);
   Override(metric_, "--metric", MetricChoices(), &recipe.metric);
   recipe.metric_given = recipe.metric_given || !metric_.empty();
+  instrument_.Apply(&recipe);
   return recipe;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "instrument_options.h"
 #include <CLI/CLI.hpp>
 
 #include "lobefit/measurement/measurement.h"
@@ -41,6 +42,7 @@ class RecipeOptions {
  private:
   std::string recipe_ = "auto";
   RecipeOverrides overrides_;
+  InstrumentOptions instrument_;
 };
 
 // Where the recipes of the library are: beside the installed program, else in the source tree that built it.
@@ -56,6 +58,7 @@ class FittedModel {
 
  private:
   std::string recipe_, metric_;
+  InstrumentOptions instrument_;
 };
 
 // A recipe file, or a recipe of the library by its name ("ellipsoid"). Throws InputError that lists the names.

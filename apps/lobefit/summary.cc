@@ -120,6 +120,26 @@ std::string Summary(const Material& material) {
     text += fmt::format("{} distinct minima found, the next one costs {:.3g} % more\n", material.minima.size(),
                         100 * (material.minima[1].cost / material.minima[0].cost - 1));
   }
+  if (material.instrument) {
+    const InstrumentUsed& i = *material.instrument;
+    text += fmt::format("Instrument: half angles {:.4g} (source) and {:.4g} degrees (detector), {} mean\n",
+                        RadiansToDegrees(i.source), RadiansToDegrees(i.detector), i.mean);
+    if (!i.gains.empty()) {
+      const auto [low, high] =
+          std::minmax_element(i.gains.begin(), i.gains.end(),
+                              [](const IncidenceGain& a, const IncidenceGain& b) { return a.gain < b.gain; });
+      text += fmt::format("  gains of {} incidences {:.4g} to {:.4g}, standard deviation {:.2g}{}\n", i.gains.size(),
+                          low->gain, high->gain, i.drift->sd, i.drift->estimated ? " (estimated)" : " (given)");
+    }
+    for (const InstrumentAngle& angle : i.alignment) {
+      text += fmt::format("  {:<6} {:.3f} +- {:.3f} degrees\n", angle.name, RadiansToDegrees(angle.value),
+                          RadiansToDegrees(angle.standard_error));
+    }
+    for (std::size_t c = 0; c < i.offset.size(); ++c) {
+      text += fmt::format("  offset {} {:.3g} +- {:.2g} /sr\n", material.channels[c], i.offset[c].value,
+                          i.offset[c].standard_error);
+    }
+  }
   for (const std::string& remark : material.remarks) text += "Note: " + remark + '\n';
   for (const std::string& direction : material.degenerate) text += "Not determined: " + direction + '\n';
   if (!material.termination.converged) text += "NOT CONVERGED: " + material.termination.message + '\n';

@@ -100,6 +100,27 @@ std::string StatisticsToText(const Statistics& statistics, const Measurement& me
   return text;
 }
 
+// What the file states of its instrument; null: not stated.
+nlohmann::ordered_json InstrumentToJson(const StatedInstrument& stated) {
+  const auto degrees = [](const std::optional<double>& half_angle) {
+    return half_angle ? nlohmann::ordered_json(RadiansToDegrees(*half_angle)) : nlohmann::ordered_json(nullptr);
+  };
+  nlohmann::ordered_json json = {{"source_deg", degrees(stated.source)}, {"detector_deg", degrees(stated.detector)}};
+  json["mean"] = stated.plain_mean ? nlohmann::ordered_json(*stated.plain_mean ? "plain" : "flux")
+                                   : nlohmann::ordered_json(nullptr);
+  return json;
+}
+
+std::string InstrumentToText(const StatedInstrument& stated) {
+  const auto half_angle = [](const char* name, const std::optional<double>& radians) {
+    return radians ? fmt::format("{} {:.4g} degrees (half angle)", name, RadiansToDegrees(*radians))
+                   : fmt::format("{} not stated", name);
+  };
+  return fmt::format("  instrument   {}, {}, mean {}\n", half_angle("source", stated.source),
+                     half_angle("detector", stated.detector),
+                     stated.plain_mean ? (*stated.plain_mean ? "plain" : "flux") : "not stated");
+}
+
 std::string ToJson(const Measurement& measurement, const Description& description) {
   nlohmann::ordered_json set_aside = nlohmann::ordered_json::object(), directions = nlohmann::ordered_json::array();
   for (int r = 0; r < kSetAsideReasons; ++r) {
@@ -127,6 +148,7 @@ std::string ToJson(const Measurement& measurement, const Description& descriptio
                                  {"theta_o_deg", {description.theta_o.low, description.theta_o.high}},
                                  {"values", values},
                                  {"conventions", measurement.conventions},
+                                 {"instrument", InstrumentToJson(measurement.instrument)},
                                  {"remarks", measurement.remarks}};
   if (description.statistics) json["statistics"] = StatisticsToJson(*description.statistics);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -153,6 +175,7 @@ std::string ToText(const Measurement& measurement, const Description& descriptio
                       measurement.isotropic ? "yes, by construction of the format" : "not by construction");
   if (description.in_plane) text += "  in plane     all samples lie in one plane through the normal\n";
   if (description.statistics) text += StatisticsToText(*description.statistics, measurement);
+  text += InstrumentToText(measurement.instrument);
   for (const auto& [option, value] : measurement.conventions) text += fmt::format("  {:<12} {}\n", option, value);
   for (const std::string& remark : measurement.remarks) text += "  note         " + remark + '\n';
   return text;

@@ -52,6 +52,7 @@ ExperimentRequest RequestOf(const ValidateVerb& verb) {
   request.layout = verb.synthesis.Layout();
   request.seed = verb.synthesis.seed();
   request.recipe = verb.recipe.Choose(request.truth.model);
+  if (request.noise.plain_mean) request.recipe.instrument.mean = ApertureMean::kPlain;
   request.fit.starts = verb.starts;
   if (verb.draw) request.range = MaterialRange{};
   return request;

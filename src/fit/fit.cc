@@ -17,6 +17,9 @@
 #include "lobefit/fit/inference/rivals.h"
 #include "lobefit/fit/inference/uncertainty.h"
 #include "lobefit/fit/inference/verdict.h"
+#include "lobefit/fit/instrument.h"
+#include "lobefit/fit/instrument_report.h"
+#include "lobefit/fit/last_descent.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/prediction.h"
 #include "lobefit/fit/objective/problem.h"
@@ -203,7 +206,7 @@ Minimum Describe(const Layout& layout, const DistinctMinimum& minimum) {
 struct Found {
   Found(const Recipe& recipe, const Measurement& measurement, const Samples& samples, const Incidences& incidences,
         const FitOptions& options, ThreadPool* pool)
-      : layout(recipe, measurement.channels.names), problem(samples, recipe) {
+      : layout(WithoutLastDescent(recipe), measurement.channels.names), problem(samples, recipe) {
     if (samples.size() * layout.channels() < layout.size()) {
       throw InputError(
           fmt::format("{}: {} usable samples in {} channels are fewer than the {} free parameters of recipe '{}'; use "
@@ -211,7 +214,9 @@ struct Found {
                       measurement.source, samples.size(), layout.channels(), layout.size(), recipe.name));
     }
     minima = FindMinima(problem, layout, samples, options, pool);
+    RefineRules(problem, measurement.channels.names, &layout, &minima, pool);
     DescendReweighted(layout, pool, &problem, &minima);
+    last = DescendLast(recipe, measurement.channels.names, incidences, &layout, &problem, &minima, pool);
     if (minima.empty()) {
       throw InputError(measurement.source +
                        ": no start of the fit has a finite cost; look at the values with `lobefit info`");
@@ -223,6 +228,7 @@ struct Found {
   Layout layout;
   Problem problem;
   std::vector<DistinctMinimum> minima;
+  LastDescent last;
   Uncertainty uncertainty;
 };
 
@@ -275,6 +281,11 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   if (const std::string why = WhyNotEvaluable(wanted.model); !why.empty())
     throw InputError("recipe '" + wanted.name + "': " + why);
   Recipe recipe = WithMetals(wanted, measurement->channels.wavelengths_nm, measurement->channels.names.size());
+  recipe = ThroughInstrument(recipe, *measurement);
+  if (recipe.noise.IsKnown() && !recipe.metric_given) {
+    recipe.metric = Metric::kAsinh;
+    recipe.noise = NoiseForAsinh(recipe.noise);
+  }
   recipe.weighting = EffectiveWeighting(recipe.weighting, measurement->samples);
   const std::size_t read = measurement->samples.size() + measurement->set_aside.total();
   SetAsideForRecipe(recipe, measurement);
@@ -348,6 +359,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   material.remarks = remarks;
   material.misfit = TestMisfit(problem, layout, best.u, samples, incidences);
   if (material.misfit->flagged) material.remarks.push_back(ToRemark(*material.misfit));
+  ReportInstrument(problem, layout, best.u, uncertainty, incidences, found->last, &pool, &material);
   material.samples_read = read;
   material.samples_used = samples.size();
   for (int r = 0; r < kSetAsideReasons; ++r) {

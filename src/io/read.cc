@@ -83,6 +83,7 @@ void TakeKeys(const std::vector<std::string>& keys, Measurement* measurement) {
       samples.wo_x[i] = c * wo.x + s * wo.y;
       samples.wo_y[i] = c * wo.y - s * wo.x;
     }
+    measurement->samples.sample_azimuth.assign(measurement->samples.size(), DegreesToRadians(*degrees));
     measurement->conventions["sample-rotation"] = FormatDouble(*degrees) + " deg (behind the file's name)";
   }
 }

@@ -196,6 +196,39 @@ void ReadParameters(const Reader& reader, Material* material) {
   }
 }
 
+InstrumentUsed ReadInstrument(const Reader& reader, const Json& json) {
+  InstrumentUsed instrument;
+  instrument.source = DegreesToRadians(reader.Get<double>(json, "source_deg"));
+  instrument.detector = DegreesToRadians(reader.Get<double>(json, "detector_deg"));
+  instrument.mean = reader.Get<std::string>(json, "mean");
+  if (json.contains("drift")) {
+    const Json& drift = reader.Member(json, "drift");
+    instrument.drift = {reader.Get<double>(drift, "sd"), reader.Get<bool>(drift, "estimated")};
+  }
+  if (json.contains("gains")) {
+    for (const Json& gain : reader.Member(json, "gains")) {
+      instrument.gains.push_back({DegreesToRadians(reader.Get<double>(gain, "theta_i_deg")),
+                                  DegreesToRadians(reader.Get<double>(gain, "phi_i_deg")),
+                                  reader.Get<double>(gain, "gain"), reader.GetNumbers(gain, "stderr", 1)[0]});
+    }
+  }
+  if (json.contains("alignment")) {
+    for (const Json& angle : reader.Member(json, "alignment")) {
+      instrument.alignment.push_back({reader.Get<std::string>(angle, "name"),
+                                      DegreesToRadians(reader.Get<double>(angle, "value_deg")),
+                                      reader.GetNumbers(angle, "stderr_deg", kPi / 180)[0],
+                                      DegreesToRadians(reader.Get<double>(angle, "prior_deg")),
+                                      reader.GetNumbers(angle, "tilt_correlation", 1)[0]});
+    }
+  }
+  if (json.contains("told_from_tilt")) instrument.told_from_tilt = reader.Get<bool>(json, "told_from_tilt");
+  if (json.contains("offset")) {
+    for (const Json& offset : reader.Member(json, "offset"))
+      instrument.offset.push_back({reader.Get<double>(offset, "value"), reader.GetNumbers(offset, "stderr", 1)[0]});
+  }
+  return instrument;
+}
+
 void ReadRest(const Reader& reader, Material* material) {
   const Json& root = reader.root();
   for (const Json& lobe : reader.Member(root, "slope_space")) {
@@ -235,6 +268,7 @@ void ReadRest(const Reader& reader, Material* material) {
                         reader.Get<double>(misfit, "probability"), reader.Get<double>(misfit, "size"),
                         reader.Get<std::string>(misfit, "where")};
   }
+  if (root.contains("instrument")) material->instrument = ReadInstrument(reader, reader.Member(root, "instrument"));
   for (const auto& [metric, rms] : reader.Member(quality, "errors").items()) {
     material->errors.push_back(
         {metric, rms.is_number() ? rms.get<double>() : std::numeric_limits<double>::quiet_NaN()});

@@ -156,6 +156,30 @@ Json SelToJson(const SelTable& table) {
       {"quantity", NameOf(table.quantity)}, {"isotropic", table.isotropic}, {"bound", table.bound}, {"slices", slices}};
 }
 
+Json InstrumentToJson(const InstrumentUsed& instrument) {
+  Json json = {{"source_deg", RadiansToDegrees(instrument.source)},
+               {"detector_deg", RadiansToDegrees(instrument.detector)},
+               {"mean", instrument.mean}};
+  if (instrument.drift) json["drift"] = {{"sd", instrument.drift->sd}, {"estimated", instrument.drift->estimated}};
+  for (const IncidenceGain& gain : instrument.gains) {
+    json["gains"].push_back({{"theta_i_deg", RadiansToDegrees(gain.theta_i)},
+                             {"phi_i_deg", RadiansToDegrees(gain.phi_i)},
+                             {"gain", gain.gain},
+                             {"stderr", Number(gain.standard_error)}});
+  }
+  for (const InstrumentAngle& angle : instrument.alignment) {
+    json["alignment"].push_back({{"name", angle.name},
+                                 {"value_deg", RadiansToDegrees(angle.value)},
+                                 {"stderr_deg", Number(RadiansToDegrees(angle.standard_error))},
+                                 {"prior_deg", RadiansToDegrees(angle.prior)},
+                                 {"tilt_correlation", Number(angle.tilt_correlation)}});
+  }
+  if (instrument.told_from_tilt) json["told_from_tilt"] = *instrument.told_from_tilt;
+  for (const InstrumentOffset& offset : instrument.offset)
+    json["offset"].push_back({{"value", offset.value}, {"stderr", Number(offset.standard_error)}});
+  return json;
+}
+
 }  // namespace
 
 std::string ToJson(const Material& material) {
@@ -193,6 +217,7 @@ std::string ToJson(const Material& material) {
         {"theta_max_deg", material.theta_max_deg}}},
   };
   if (material.sel) json["sel"] = SelToJson(*material.sel);
+  if (material.instrument) json["instrument"] = InstrumentToJson(*material.instrument);
   // Bytes that are not UTF-8 (a file name may hold any) become the replacement character.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

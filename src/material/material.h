@@ -80,6 +80,33 @@ struct TriedModel {
   bool chosen = false;
 };
 
+// What a fit assumed and found of its instrument. Angles in radians.
+struct Drift {
+  double sd = 0;           // of the logarithm of a gain
+  bool estimated = false;  // from the data, else given
+};
+struct IncidenceGain {
+  double theta_i = 0, phi_i = 0, gain = 1, standard_error = 0;
+};
+// An angle by which the sample stood crooked.
+struct InstrumentAngle {
+  std::string name;  // "e_x"
+  double value = 0, standard_error = 0, prior = 0;
+  double tilt_correlation = 0;  // with a lobe's tilt, the largest; 0: no tilt is free
+};
+struct InstrumentOffset {
+  double value = 0, standard_error = 0;  // of f_r cos_theta_i, 1/sr
+};
+struct InstrumentUsed {
+  double source = 0, detector = 0;  // half angles of the discs that they fill
+  std::string mean;                 // over them, that a value is: "flux", "plain"
+  std::optional<Drift> drift;
+  std::vector<IncidenceGain> gains;  // with drift
+  std::vector<InstrumentAngle> alignment;
+  std::optional<bool> told_from_tilt;    // the alignment; empty: no alignment or no tilt was fitted
+  std::vector<InstrumentOffset> offset;  // [channel]; empty: none was fitted
+};
+
 struct Source {
   std::string file, sha256, format;
   std::map<std::string, std::string> conventions;
@@ -103,9 +130,10 @@ struct Material {
   // Directions in parameter space that the data do not determine, in words.
   std::vector<std::string> degenerate;
   std::vector<std::string> remarks;
-  std::optional<Misfit> misfit;    // of fits of a model
-  std::vector<TriedModel> tried;   // where the model was chosen automatically
-  std::optional<Verdict> verdict;  // of fits of a model
+  std::optional<Misfit> misfit;              // of fits of a model
+  std::vector<TriedModel> tried;             // where the model was chosen automatically
+  std::optional<Verdict> verdict;            // of fits of a model
+  std::optional<InstrumentUsed> instrument;  // of fits through one
 
   std::size_t samples_used = 0, samples_read = 0;
   std::map<std::string, std::size_t> set_aside;

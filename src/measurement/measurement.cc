@@ -18,6 +18,7 @@ void ForEachArray(Samples& samples, Function&& function) {
   if (!samples.weight.empty()) function(samples.weight);
   if (!samples.sigma.empty()) function(samples.sigma);
   if (!samples.solid_angle.empty()) function(samples.solid_angle);
+  if (!samples.sample_azimuth.empty()) function(samples.sample_azimuth);
   function(samples.origin);
 }
 
@@ -57,6 +58,7 @@ Samples Samples::Subset(const std::vector<std::size_t>& indices) const {
   pick(weight, subset.weight);
   pick(sigma, subset.sigma);
   pick(solid_angle, subset.solid_angle);
+  pick(sample_azimuth, subset.sample_azimuth);
   pick(origin, subset.origin);
   return subset;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct Samples {
   // Measure of the sample's cell in the space of direction pairs (any constant factor), for weighting by solid angle.
   // Empty: not known, the file lists directions without cells.
   std::vector<double> solid_angle;
+  // By how much the sample was turned about its normal on the stage, radians, where the file turned it as a whole;
+  // directions are those of its frame. Empty: by nothing.
+  std::vector<double> sample_azimuth;
   // Where the sample stands in its file: line of a text file (from 1), index of the cell in a table (from 0).
   std::vector<std::uint32_t> origin;
 
@@ -57,6 +61,13 @@ struct Samples {
 // A direction of a sample: the one to the light (wi) or the one to the viewer (wo).
 enum class Beam { kLight, kViewer };
 
+// What a file states of the instrument that made it; empty: it does not.
+struct StatedInstrument {
+  std::optional<double> source, detector;  // half angles of the discs that they fill, radians
+  std::optional<bool> plain_mean;          // a value is the mean of f_r, else of the flux over the mean cosines
+  bool operator==(const StatedInstrument&) const = default;
+};
+
 struct Measurement {
   Channels channels;
   Samples samples;
@@ -75,6 +86,7 @@ struct Measurement {
   // What the file leaves open or states about itself, by option name, with where it came from: {"merl-cell", "centre
   // (default)"}.
   std::map<std::string, std::string> conventions;
+  StatedInstrument instrument;
   // Remarks for people: rectified noise recognised, columns ignored.
   std::vector<std::string> remarks;
 };

@@ -38,6 +38,10 @@ bool HasOneWavelength(const Measurement& part) {
 void RequireSameKind(const Measurement& a, const Measurement& b) {
   if (a.samples.solid_angle.empty() != b.samples.solid_angle.empty())
     Refuse(a, b, "one is a table of cells (" + a.format + "), the other a list of samples (" + b.format + ")");
+  if (a.instrument != b.instrument)
+    Refuse(a, b,
+           "they state different half angles or means of the instrument; leave the keys source, detector and mean "
+           "out of the files, or fit each by itself");
   if (a.isotropic != b.isotropic)
     Refuse(a, b, "one is isotropic by construction, the other states azimuths of the light");
 }
@@ -58,6 +62,9 @@ void AppendSamples(Samples&& from, Samples* to) {
   // A part without weights counts as the mean of those that have them, which is 1.
   if (to->weight.empty() && !from.weight.empty()) to->weight.assign(to->size(), 1.0);
   if (!to->weight.empty() && from.weight.empty()) from.weight.assign(from.size(), 1.0);
+  if (to->sample_azimuth.empty() && !from.sample_azimuth.empty()) to->sample_azimuth.assign(to->size(), 0.0);
+  if (!to->sample_azimuth.empty() && from.sample_azimuth.empty()) from.sample_azimuth.assign(from.size(), 0.0);
+  MoveBehind(&to->sample_azimuth, std::move(from.sample_azimuth));
   MoveBehind(&to->wi_x, std::move(from.wi_x));
   MoveBehind(&to->wi_y, std::move(from.wi_y));
   MoveBehind(&to->wi_z, std::move(from.wi_z));
@@ -151,6 +158,7 @@ Measurement Pool(std::vector<Measurement> parts, bool merge_repeated) {
   }
   MergeWords(parts, &pooled);
   pooled.isotropic = parts[0].isotropic;
+  pooled.instrument = parts[0].instrument;
   pooled.format = parts[0].format;
   for (const Measurement& part : parts) {
     if (part.format != pooled.format) pooled.format = "several";

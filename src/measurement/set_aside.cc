@@ -17,6 +17,7 @@ constexpr std::array<Names, kSetAsideReasons> kNames = {{
     {"outside_selection", "outside the chosen part of the file"},
     {"duplicate", "pair of directions that occurs before"},
     {"flagged", "flagged as unreliable by the file"},
+    {"disc_at_horizon", "source or detector reaches the horizon"},
 }};
 
 }  // namespace

@@ -17,8 +17,9 @@ enum class SetAsideReason {
   kOutsideSelection,  // not in the part of the file that the user chose
   kDuplicate,         // the same pair of directions again
   kFlagged,           // the file itself flags the sample as unreliable
+  kDiscAtHorizon,     // the disc of source or detector about a direction reaches the horizon
 };
-inline constexpr int kSetAsideReasons = 8;
+inline constexpr int kSetAsideReasons = 9;
 
 // Key in JSON documents ("below_horizon") and words for people ("direction below the horizon").
 std::string_view Key(SetAsideReason reason);

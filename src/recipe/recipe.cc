@@ -16,6 +16,26 @@ const std::vector<Choice<Weighting>>& WeightingChoices() {
   return choices;
 }
 
+const std::vector<Choice<ApertureMean>>& ApertureMeanChoices() {
+  static const std::vector<Choice<ApertureMean>> choices = {
+      {ApertureMean::kFlux, "flux", "mean of f_r cos_theta_i cos_theta_o over the means of the cosines"},
+      {ApertureMean::kPlain, "plain", "mean of f_r"},
+  };
+  return choices;
+}
+
+std::uint16_t AlignmentRecipe::TurnOf(double azimuth) const {
+  const auto distance = [&](double other) { return std::fabs(std::remainder(azimuth - other, 2 * kPi)); };
+  const auto nearest =
+      std::min_element(azimuths.begin(), azimuths.end(), [&](double a, double b) { return distance(a) < distance(b); });
+  return static_cast<std::uint16_t>(nearest - azimuths.begin());
+}
+
+Aperture Recipe::aperture() const {
+  return {instrument.source.value_or(0), instrument.detector.value_or(0),
+          instrument.mean.value_or(ApertureMean::kFlux)};
+}
+
 bool Recipe::IsFree(std::size_t index) const {
   return Parameters(model)[index].free && parameters[index].fixed.empty();
 }

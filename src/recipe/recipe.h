@@ -1,6 +1,7 @@
 // What to fit: model, free parameters, starts, bounds, metric, loss, angle limit. How to solve it is not in a recipe.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -8,9 +9,11 @@
 #include <vector>
 
 #include "lobefit/core/brdf/model.h"
+#include "lobefit/core/instrument/aperture.h"
 #include "lobefit/core/sel/sel_table.h"
 #include "lobefit/fit/metric/loss.h"
 #include "lobefit/fit/metric/metric.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 
@@ -18,6 +21,7 @@ namespace lobefit {
 enum class Weighting { kCells, kSolidAngle, kAuto };
 
 const std::vector<Choice<Weighting>>& WeightingChoices();
+const std::vector<Choice<ApertureMean>>& ApertureMeanChoices();
 
 // What a recipe says of one parameter; inside units. Bounds default to the range in the parameter table.
 struct ParameterRecipe {
@@ -39,6 +43,36 @@ struct SelRecipe {
   double drift = 3;
 };
 
+// Drift of lamp and detector from one incident direction to the next.
+struct DriftRecipe {
+  std::optional<double> sd;  // standard deviation of a gain, relative, in (0, 1]; empty: estimated from the data
+};
+
+inline constexpr double kMostAlignmentDeg = 5;
+// A sample that stands crooked on its stage (KernelAlignment): its angles are fitted with a normal prior about 0.
+struct AlignmentRecipe {
+  double prior = 0.2 * kPi / 180;       // standard deviation of e_x and e_y, radians, in (0, 5 degrees]
+  double prior_turn = 0.5 * kPi / 180;  // of e_z of the turns after the first
+  std::vector<double> azimuths = {0};   // of the sample in each turn, radians; the fit takes its measurement's
+  std::uint16_t TurnOf(double azimuth) const;
+};
+
+// The instrument that the fit looks through; what is empty is taken as the measurement's file states it, else as a
+// point and a flux mean.
+struct InstrumentRecipe {
+  std::optional<double> source, detector;  // half angles of their discs, radians, in [0, kLargestHalfAngle]
+  std::optional<ApertureMean> mean;
+  // Gains of the incidences, whose logarithms are normal about 0 (gains.h).
+  std::optional<DriftRecipe> drift;
+  std::optional<AlignmentRecipe> alignment;
+  // Readings f_r cos_theta_i too high by a constant of each channel.
+  bool offset = false;
+  // The width in slope space that the rules of a mean are made for (LobeMeanRule), chosen by the fit; 0: the smaller
+  // disc's own width.
+  double finest_width = 0;
+};
+inline constexpr double kLargestHalfAngle = 30 * kPi / 180;
+
 struct Recipe {
   std::string name;
   std::string reason;  // why it was chosen, where it was chosen automatically
@@ -55,6 +89,7 @@ struct Recipe {
   Loss loss = Loss::kNone;
   double loss_scale = 0.1;
   double theta_max = 80 * 3.14159265358979323846 / 180;  // radians
+  InstrumentRecipe instrument;
   // Of the channels, for metals; empty: the measurement's own.
   std::vector<double> wavelengths_nm;
   // Azimuth of the plane of an in-plane measurement, for ggx-tilted; Fit takes that of its measurement where it has
@@ -62,6 +97,7 @@ struct Recipe {
   double plane_azimuth = 0;
 
   bool IsFree(std::size_t index) const;
+  Aperture aperture() const;
 };
 
 // A recipe for `model` with every choice at its default.

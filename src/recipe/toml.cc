@@ -186,6 +186,84 @@ void ReadLoss(const toml::table& root, const Place& place, Recipe* recipe) {
   }
 }
 
+// The half angle of a disc, in degrees.
+std::optional<double> HalfAngle(const toml::table& table, const char* key, const Place& place) {
+  const std::optional<double> degrees = Number(table, key, place);
+  if (!degrees) return std::nullopt;
+  const double highest = RadiansToDegrees(kLargestHalfAngle);
+  if (!(*degrees >= 0 && *degrees <= highest + 1e-9)) {
+    place.Fail(
+        table.get(key)->source(),
+        fmt::format("{} = {:g}: the half angle of a disc, in degrees, must lie in [0, {:g}]", key, *degrees, highest));
+  }
+  return DegreesToRadians(*degrees);
+}
+
+void ReadInstrument(const toml::table& root, const Place& place, Recipe* recipe) {
+  const toml::table* table = Table(root, "instrument", place);
+  if (table == nullptr) return;
+  CheckKeys(*table, {"source", "detector", "mean", "noise", "drift", "alignment", "offset"}, "of [instrument]", place);
+  recipe->instrument.source = HalfAngle(*table, "source", place);
+  recipe->instrument.detector = HalfAngle(*table, "detector", place);
+  if (table->contains("mean")) {
+    recipe->instrument.mean = ApertureMean::kFlux;
+    ReadChoice(*table, "mean", ApertureMeanChoices(), place, &*recipe->instrument.mean);
+  }
+  if (const toml::table* noise = Table(*table, "noise", place)) {
+    CheckKeys(*noise, {"floor", "relative"}, "of the noise", place);
+    const std::optional<double> floor = Number(*noise, "floor", place), relative = Number(*noise, "relative", place);
+    if (!floor || !relative || !(*floor > 0) || !(*relative > 0 && *relative <= 1)) {
+      place.Fail(noise->source(),
+                 "noise is written as { floor = 0.002, relative = 0.03 }: the floor, of f_r cos(theta_i) in 1/sr, "
+                 "above 0, the relative part in (0, 1]");
+    }
+    recipe->noise = {*floor, *relative};
+  }
+  if (const toml::node* drift = table->get("drift")) {
+    const std::optional<double> sd = drift->value<double>();
+    if (!(drift->is_string() && *drift->value<std::string>() == "auto") && !(sd && *sd > 0 && *sd <= 1))
+      place.Fail(drift->source(), "drift is \"auto\" or the relative standard deviation of a gain, in (0, 1]");
+    recipe->instrument.drift = drift->is_string() ? DriftRecipe{} : DriftRecipe{*sd};
+  }
+  if (const toml::table* alignment = Table(*table, "alignment", place)) {
+    CheckKeys(*alignment, {"prior_deg"}, "of the alignment", place);
+    const double prior = Number(*alignment, "prior_deg", place).value_or(RadiansToDegrees(AlignmentRecipe().prior));
+    if (!(prior > 0 && prior <= kMostAlignmentDeg)) {
+      place.Fail(alignment->source(),
+                 fmt::format("prior_deg = {:g}: the standard deviation of a crooked sample's angles, in degrees, must "
+                             "lie in (0, {:g}]",
+                             prior, kMostAlignmentDeg));
+    }
+    recipe->instrument.alignment = AlignmentRecipe();
+    recipe->instrument.alignment->prior = DegreesToRadians(prior);
+  }
+  if (const toml::node* offset = table->get("offset")) {
+    if (!offset->is_boolean()) place.Fail(offset->source(), "'offset' must be true or false");
+    recipe->instrument.offset = *offset->value<bool>();
+  }
+}
+
+// The section that ReadInstrument reads; empty where nothing is stated.
+std::string InstrumentToToml(const Recipe& recipe) {
+  const InstrumentRecipe& instrument = recipe.instrument;
+  std::string text;
+  if (instrument.source) text += fmt::format("source = {}\n", FormatDouble(RadiansToDegrees(*instrument.source)));
+  if (instrument.detector) text += fmt::format("detector = {}\n", FormatDouble(RadiansToDegrees(*instrument.detector)));
+  if (instrument.mean) text += fmt::format("mean = \"{}\"\n", NameOf(ApertureMeanChoices(), *instrument.mean));
+  if (recipe.noise.IsKnown()) {
+    text += fmt::format("noise = {{ floor = {}, relative = {} }}\n", FormatDouble(recipe.noise.floor),
+                        FormatDouble(recipe.noise.relative));
+  }
+  if (instrument.drift)
+    text += "drift = " + (instrument.drift->sd ? FormatDouble(*instrument.drift->sd) : std::string("\"auto\"")) + '\n';
+  if (instrument.alignment) {
+    text +=
+        fmt::format("alignment = {{ prior_deg = {} }}\n", FormatDouble(RadiansToDegrees(instrument.alignment->prior)));
+  }
+  if (instrument.offset) text += "offset = true\n";
+  return text.empty() ? text : "\n[instrument]\n" + text;
+}
+
 // A recipe of a table of lobes: what belongs to a model has no place in it.
 Recipe ReadSelRecipe(const toml::table& root, const Place& place) {
   const toml::table& table = *Table(root, "sel", place);
@@ -219,8 +297,8 @@ Recipe ReadSelRecipe(const toml::table& root, const Place& place) {
 // The part of a recipe that names a model.
 Recipe ReadModelRecipe(const toml::table& root, const Place& place) {
   CheckKeys(root,
-            {"name", "metric", "weighting", "loss", "theta_max_deg", "wavelengths_nm", "diffuse", "lobe", "parameters",
-             "sel"},
+            {"name", "metric", "weighting", "loss", "theta_max_deg", "wavelengths_nm", "diffuse", "instrument", "lobe",
+             "parameters", "sel"},
             "of a recipe", place);
   Model model;
   if (const toml::node* lobes = root.get("lobe")) {
@@ -255,6 +333,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
   recipe.metric_given = root.contains("metric");
   ReadChoice(root, "weighting", WeightingChoices(), place, &recipe.weighting);
   ReadLoss(root, place, &recipe);
+  ReadInstrument(root, place, &recipe);
   if (const std::optional<double> limit = Number(root, "theta_max_deg", place)) {
     if (*limit <= 0 || *limit > 90)
       place.Fail(root.get("theta_max_deg")->source(), "theta_max_deg must lie in (0, 90]");
@@ -317,6 +396,7 @@ std::string ToToml(const Recipe& recipe) {
       text += "knots = [" + Join(knots) + "]\n";
     }
   }
+  text += InstrumentToToml(recipe);
   text += "\n[parameters]\n";
   const std::vector<Parameter> parameters = Parameters(recipe.model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {

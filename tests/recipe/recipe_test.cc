@@ -141,5 +141,51 @@ TEST(AutomaticRecipe, TakesWhatTheMeasurementDetermines) {
   EXPECT_FALSE(AutomaticRecipe({}).reason.empty());
 }
 
+TEST(Recipe, ReadsTheInstrument) {
+  const std::string lobe = "[[lobe]]\nndf = \"ggx\"\n";
+  const Recipe recipe = ParseRecipe(lobe + "[instrument]\nsource = 2\ndetector = 1.5\nmean = \"plain\"\n", "r.toml");
+  EXPECT_DOUBLE_EQ(*recipe.instrument.source, DegreesToRadians(2));
+  EXPECT_DOUBLE_EQ(recipe.aperture().detector, DegreesToRadians(1.5));
+  EXPECT_EQ(recipe.aperture().mean, ApertureMean::kPlain);
+  const Recipe again = ParseRecipe(ToToml(recipe), "again.toml");
+  EXPECT_DOUBLE_EQ(*again.instrument.detector, *recipe.instrument.detector);
+  EXPECT_EQ(again.instrument.mean, recipe.instrument.mean);
+  EXPECT_FALSE(ParseRecipe(lobe, "r.toml").aperture().any());
+  const auto message = [&](const std::string& section) -> std::string {
+    try {
+      ParseRecipe(lobe + section, "r.toml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_THAT(message("[instrument]\nsource = 90\n"), testing::HasSubstr("r.toml:4: source = 90: the half angle"));
+  EXPECT_THAT(message("[instrument]\ndetector = -1\n"), testing::HasSubstr("must lie in [0, 30]"));
+  EXPECT_THAT(message("[instrument]\nmean = \"median\"\n"), testing::HasSubstr("allowed: flux, plain"));
+  EXPECT_THAT(message("[instrument]\naperture = 2\n"), testing::HasSubstr("allowed: source, detector, mean"));
+  EXPECT_THAT(message("[instrument]\ndrift = \"often\"\n"), testing::HasSubstr("drift is \"auto\" or the relative"));
+  EXPECT_THAT(message("[instrument]\ndrift = 0\n"), testing::HasSubstr("in (0, 1]"));
+  EXPECT_THAT(message("[instrument]\nalignment = { prior_deg = 9 }\n"), testing::HasSubstr("must lie in (0, 5]"));
+  EXPECT_THAT(message("[instrument]\nnoise = { floor = 0.1 }\n"), testing::HasSubstr("noise is written as"));
+  EXPECT_THAT(message("[instrument]\noffset = 1\n"), testing::HasSubstr("true or false"));
+}
+
+TEST(Recipe, ReadsWhatAnInstrumentDoesBesidesAveraging) {
+  const Recipe read = ParseRecipe(
+      "[[lobe]]\nndf = \"ggx\"\n[instrument]\ndrift = 0.03\nalignment = { prior_deg = 0.5 }\noffset = true\n"
+      "noise = { floor = 0.002, relative = 0.04 }\n",
+      "r.toml");
+  for (const Recipe& recipe : {read, ParseRecipe(ToToml(read), "again.toml")}) {
+    EXPECT_EQ(recipe.instrument.drift->sd, 0.03);
+    EXPECT_DOUBLE_EQ(recipe.instrument.alignment->prior, DegreesToRadians(0.5));
+    EXPECT_TRUE(recipe.instrument.offset);
+    EXPECT_EQ(recipe.noise.floor, 0.002);
+    EXPECT_EQ(recipe.noise.relative, 0.04);
+  }
+  const Recipe estimated = ParseRecipe("[[lobe]]\nndf = \"ggx\"\n[instrument]\ndrift = \"auto\"\n", "r.toml");
+  ASSERT_TRUE(estimated.instrument.drift);
+  EXPECT_FALSE(estimated.instrument.drift->sd);
+}
+
 }  // namespace
 }  // namespace lobefit

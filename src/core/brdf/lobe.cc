@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lobefit/core/brdf/coat.h"
 #include "lobefit/core/brdf/radial_lobe.h"
@@ -201,35 +202,42 @@ void SpecularLobe(const DirectionArrays& directions, const Lobe& lobe, const Lob
   }
 }
 
-double FresnelFactor(Fresnel fresnel, const double* parameters, double cos_d, double* dF) {
+double FresnelFactor(Fresnel fresnel, const double* parameters, double cos_d, double* dF, double* dF_dcos_d) {
   switch (fresnel) {
     case Fresnel::kSchlick:
-      return FresnelSchlick(cos_d, parameters[0], nullptr, dF);
+      return FresnelSchlick(cos_d, parameters[0], dF_dcos_d, dF);
     case Fresnel::kConductor: {
       ConductorFresnelGradient gradient = {};
-      const double value = FresnelConductor(cos_d, {parameters[0], parameters[1]}, dF != nullptr ? &gradient : nullptr);
+      const bool derivatives = dF != nullptr || dF_dcos_d != nullptr;
+      const double value = FresnelConductor(cos_d, {parameters[0], parameters[1]}, derivatives ? &gradient : nullptr);
       if (dF != nullptr) dF[0] = gradient.deta, dF[1] = gradient.dk;
+      if (dF_dcos_d != nullptr) *dF_dcos_d = gradient.dc;
       return value;
     }
     case Fresnel::kDielectric:
-      return FresnelDielectric(cos_d, parameters[0], nullptr, dF);
+      return FresnelDielectric(cos_d, parameters[0], dF_dcos_d, dF);
     case Fresnel::kSchlickF82: {
       SchlickF82Gradient gradient = {};
-      const double value = FresnelSchlickF82(cos_d, parameters[0], parameters[1], dF != nullptr ? &gradient : nullptr);
+      const bool derivatives = dF != nullptr || dF_dcos_d != nullptr;
+      const double value = FresnelSchlickF82(cos_d, parameters[0], parameters[1], derivatives ? &gradient : nullptr);
       if (dF != nullptr) dF[0] = gradient.df0, dF[1] = gradient.dtint;
+      if (dF_dcos_d != nullptr) *dF_dcos_d = gradient.dc;
       return value;
     }
     case Fresnel::kCurve: {
-      double basis[kFresnelCurveSize], value = 0;
-      FresnelCurveBasis(cos_d, basis);
+      double basis[kFresnelCurveSize], by_cos_d[kFresnelCurveSize], value = 0;
+      FresnelCurveBasis(cos_d, basis, dF_dcos_d != nullptr ? by_cos_d : nullptr);
       for (std::size_t k = 0; k < kFresnelCurveSize; ++k) value += parameters[k] * basis[k];
       if (dF != nullptr) std::copy(basis, basis + kFresnelCurveSize, dF);
+      if (dF_dcos_d != nullptr)
+        *dF_dcos_d = std::inner_product(by_cos_d, by_cos_d + kFresnelCurveSize, parameters, 0.0);
       return value;
     }
     case Fresnel::kNone:
       break;
   }
   if (dF != nullptr) dF[0] = 1;
+  if (dF_dcos_d != nullptr) *dF_dcos_d = 0;
   return parameters[0];
 }
 

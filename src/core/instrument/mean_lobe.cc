@@ -26,6 +26,21 @@ Vec3 Combined(const double* by, const Vec3& w, const Vec3& e3) { return by[0] * 
 // Directions of all points of a few samples, structure of arrays.
 constexpr std::size_t kSamplesAtOnce = 16;
 
+// The disc about the mirrored light is the mirrored disc: a retro lobe's mean is that of the lobe seen from there.
+void MeanOfMirrored(const DirectionArrays& directions, const Lobe& lobe, const LobeShape& shape,
+                    const LobeMeanRule& rule, const LobeMeans& means) {
+  std::vector<double> x(directions.wi_x, directions.wi_x + directions.count),
+      y(directions.wi_y, directions.wi_y + directions.count);
+  for (double& v : x) v = -v;
+  for (double& v : y) v = -v;
+  DirectionArrays mirrored = directions;
+  mirrored.wi_x = x.data();
+  mirrored.wi_y = y.data();
+  Lobe forward = lobe;
+  forward.direction = LobeDirection::kSpecular;
+  MeanLobe(mirrored, forward, shape, rule, means);
+}
+
 }  // namespace
 
 bool HasMeanInClosedForm(const Lobe& lobe) {
@@ -67,14 +82,17 @@ LobeMeanRule MakeLobeMeanRule(const Lobe& lobe, const Aperture& aperture, double
   return rule;
 }
 
-void MeanLobe(const DirectionArrays& directions, const Lobe& lobe, const SlopeCoordinates& shape,
-              const LobeMeanRule& rule, const LobeMeans& means) {
-  if (rule.closed_form) return GgxMeanLobe(directions, shape, lobe.masking, rule.ggx, means);
+void MeanLobe(const DirectionArrays& directions, const Lobe& lobe, const LobeShape& shape, const LobeMeanRule& rule,
+              const LobeMeans& means) {
+  if (lobe.direction == LobeDirection::kRetro) return MeanOfMirrored(directions, lobe, shape, rule, means);
+  if (rule.closed_form) return GgxMeanLobe(directions, shape.slope, lobe.masking, rule.ggx, means);
   const bool derivatives = means.gradient != nullptr;
+  const std::size_t size = ShapeParameters(lobe);
   const std::size_t per_sample = rule.points.size(), most = per_sample * kSamplesAtOnce;
   std::array<std::vector<double>, 6> moved;
   for (std::vector<double>& field : moved) field.resize(most);
-  std::vector<double> specular(most), cos_d(most), gradient(derivatives ? 5 * most : 0);
+  std::vector<double> specular(most), cos_d(most), gradient(derivatives ? size * most : 0);
+  std::vector<double> dsum(size), dmoment(size);
   const DirectionArrays& from = directions;
   for (std::size_t begin = 0; begin < from.count; begin += kSamplesAtOnce) {
     const std::size_t samples = std::min(kSamplesAtOnce, from.count - begin), count = samples * per_sample;
@@ -92,7 +110,9 @@ void MeanLobe(const DirectionArrays& directions, const Lobe& lobe, const SlopeCo
         {moved[0].data(), moved[1].data(), moved[2].data(), moved[3].data(), moved[4].data(), moved[5].data(), count},
         lobe, shape, specular.data(), cos_d.data(), derivatives ? gradient.data() : nullptr);
     for (std::size_t k = 0; k < samples; ++k) {
-      double sum = 0, moment = 0, dsum[5] = {}, dmoment[5] = {};
+      double sum = 0, moment = 0;
+      std::fill(dsum.begin(), dsum.end(), 0.0);
+      std::fill(dmoment.begin(), dmoment.end(), 0.0);
       for (std::size_t q = 0; q < per_sample; ++q) {
         const std::size_t at = k * per_sample + q;
         const double weight = rule.points[q].weight * (rule.ggx.flux ? moved[2][at] * moved[5][at] : 1.0);
@@ -100,7 +120,7 @@ void MeanLobe(const DirectionArrays& directions, const Lobe& lobe, const SlopeCo
         const double argument = rule.argument == FresnelArgument::kCosine ? cos_d[at] : x * x * (x * x) * x;
         sum += weight * specular[at];
         moment += weight * specular[at] * argument;
-        for (std::size_t j = 0; derivatives && j < 5; ++j) {
+        for (std::size_t j = 0; derivatives && j < size; ++j) {
           const double d = weight * gradient[j * count + at];
           dsum[j] += d;
           dmoment[j] += d * argument;
@@ -111,7 +131,7 @@ void MeanLobe(const DirectionArrays& directions, const Lobe& lobe, const SlopeCo
       means.specular[i] = scale * sum;
       // A lobe that reflects nothing here has no mean argument: any will do.
       means.argument[i] = sum > 0 ? moment / sum : 0.0;
-      for (std::size_t j = 0; derivatives && j < 5; ++j) {
+      for (std::size_t j = 0; derivatives && j < size; ++j) {
         means.gradient[j * from.count + i] = scale * dsum[j];
         means.argument_gradient[j * from.count + i] = sum > 0 ? (dmoment[j] - means.argument[i] * dsum[j]) / sum : 0.0;
       }

@@ -31,8 +31,8 @@ inline constexpr double kMostRelativeWidth = 2;
 // kMostRelativeWidth lobes and there is no closed form. `aperture` must not be a point.
 LobeMeanRule MakeLobeMeanRule(const Lobe& lobe, const Aperture& aperture, double alpha, double cos_d);
 
-// As GgxMeanLobe, any lobe.
-void MeanLobe(const DirectionArrays& directions, const Lobe& lobe, const SlopeCoordinates& shape,
-              const LobeMeanRule& rule, const LobeMeans& means);
+// As GgxMeanLobe, any lobe: gradients are ShapeParameters(lobe) arrays.
+void MeanLobe(const DirectionArrays& directions, const Lobe& lobe, const LobeShape& shape, const LobeMeanRule& rule,
+              const LobeMeans& means);
 
 }  // namespace lobefit

@@ -38,7 +38,7 @@ Eigen::MatrixXd LossCurvature(const Problem& problem, const Layout& layout, cons
       evaluator.Evaluate(order, begin, std::min(last, begin + kPiece), &samples);
       scores.setZero(samples.curvature.size(), n);
       for (std::size_t c = 0; c < samples.rows.size(); ++c) {
-        const std::vector<int> columns = CoordinatesOfColumns(layout, c);
+        const std::vector<int> columns = layout.CoordinatesOfColumns(c);
         for (std::size_t j = 0; j < columns.size(); ++j) {
           if (columns[j] >= 0)
             scores.col(columns[j]) +=
@@ -59,7 +59,7 @@ struct Arrow {
 };
 
 Arrow ArrowOf(const Layout& layout, const std::vector<bool>& at_bound) {
-  const bool coupled = layout.recipe().loss != Loss::kNone;
+  const bool coupled = layout.recipe().loss != Loss::kNone || layout.recipe().instrument.drift;
   constexpr int kSeveral = -2, kNone = -1;
   std::vector<int> channel(layout.size(), kNone);
   for (std::size_t c = 0; c < layout.channels(); ++c) {
@@ -112,6 +112,25 @@ void MarkFlat(const Layout& layout, Eigen::VectorXd direction, Bread* bread) {
   bread->degenerate.push_back(NameDirection(direction, layout));
 }
 
+void AddPriors(const Problem& problem, const Layout& layout, double cost, const std::vector<GainLink>& links,
+               Bread* bread) {
+  const Gains* gains = problem.gains();
+  const double of_gains = gains != nullptr ? gains->PriorSum() : 0.0;
+  const double variance = (2 * cost - of_gains) / static_cast<double>(problem.size() * problem.channels());
+  bread->prior_of_gains = bread->prior_of_coordinates = Eigen::MatrixXd::Zero(bread->size(), bread->size());
+  for (std::size_t k = 0; gains != nullptr && k < gains->size(); ++k) {
+    bread->lean.push_back(bread->whitening.transpose() * links[k].link / links[k].curvature);
+    bread->prior_of_gains +=
+        gains->precision() * gains->residual_variance() * bread->lean[k] * bread->lean[k].transpose();
+  }
+  for (std::size_t i = 0; i < layout.size(); ++i) {
+    const Coordinate& coordinate = layout.coordinates()[i];
+    if (!coordinate.observed) continue;
+    const auto row = bread->whitening.row(static_cast<Eigen::Index>(i));
+    bread->prior_of_coordinates += variance * variance * coordinate.prior * row.transpose() * row;
+  }
+}
+
 }  // namespace
 
 Bread FactorBread(const Problem& problem, const Layout& layout, const std::vector<double>& u, ThreadPool* pool) {
@@ -120,7 +139,8 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
   bread.undetermined.assign(layout.size(), false);
   Eigen::MatrixXd a;
   Eigen::VectorXd gradient;
-  Linearise(problem, layout, u.data(), pool, &a, &gradient);
+  std::vector<GainLink> links;
+  const double cost = Linearise(problem, layout, u.data(), pool, &a, &gradient, &links);
   for (std::size_t i = 0; i < layout.size(); ++i) {
     const Coordinate& coordinate = layout.coordinates()[i];
     const double slack = 1e-9 * (coordinate.high - coordinate.low);
@@ -182,7 +202,7 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
       bread.whitening.row(arrow.own[c][i]).segment(bread.first[c], bread.own[c]) =
           scale(arrow.own[c][i]) * roots[c].row(static_cast<Eigen::Index>(i));
     }
-    const std::vector<int> coordinates = CoordinatesOfColumns(layout, c);
+    const std::vector<int> coordinates = layout.CoordinatesOfColumns(c);
     Eigen::MatrixXd whiten(coordinates.size(), bread.border + bread.own[c]);
     whiten.setZero();
     for (std::size_t j = 0; j < coordinates.size(); ++j) {
@@ -193,6 +213,7 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
     }
     bread.whiten_row.push_back(whiten);
   }
+  AddPriors(problem, layout, cost, links, &bread);
   return bread;
 }
 

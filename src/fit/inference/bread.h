@@ -20,7 +20,7 @@ namespace lobefit {
 // A is an arrow: coordinates of one channel (its F0, its albedo) meet those of another only through the rest, the
 // border. W has the same form, so that a sample's row of one channel has entries for the border and for that channel
 // alone, and a fit of many channels costs no more a channel than one of few. A loss takes all channels of a sample
-// together: then all is border.
+// together, and so does a gain: then all is border. Gains are taken out of A as out of the step (gains.h).
 struct Bread {
   // Columns of W: the border's, then channel by channel those of its own coordinates.
   Eigen::Index border = 0;
@@ -29,6 +29,11 @@ struct Bread {
   // [channel]: a row of the kernel's columns without the residual (KernelModel), times this, is the row times W: the
   // border's entries, then the channel's own.
   std::vector<Eigen::MatrixXd> whiten_row;
+  // Of gains, W^T h / d (GainLink): a sample's row less its gain's column times this is what the sample says of the
+  // coordinates when the gain follows them. The prior of a gain is one more row, its column the root of the precision.
+  std::vector<Eigen::VectorXd> lean;  // [gain]
+  // W^T P W of priors that stand for observations: what they add to the filling, whose unit is a residual's variance.
+  Eigen::MatrixXd prior_of_gains, prior_of_coordinates;
   std::vector<bool> at_bound;  // [coordinate] held at a bound: the cost would go on falling beyond it
   // [coordinate] has a part in a direction that is flat: it has no error.
   std::vector<bool> undetermined;

@@ -141,7 +141,7 @@ Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<dou
   SampleRows piece;
   std::vector<Eigen::VectorXd> gains;
   std::vector<std::vector<int>> coordinates;
-  for (std::size_t c = 0; c < problem.channels(); ++c) coordinates.push_back(CoordinatesOfColumns(layout, c));
+  for (std::size_t c = 0; c < problem.channels(); ++c) coordinates.push_back(layout.CoordinatesOfColumns(c));
   Eigen::VectorXd row(n), rows(n);
   for (std::size_t begin = 0; begin < problem.size(); begin += kPiece * stride) {
     const std::size_t count = std::min(problem.size(), begin + kPiece) - begin;

@@ -11,13 +11,6 @@ std::vector<std::uint32_t> FileOrder(std::size_t count) {
   return order;
 }
 
-std::vector<int> CoordinatesOfColumns(const Layout& layout, std::size_t c) {
-  std::vector<int> coordinates;
-  for (std::size_t k = 0; k < layout.shape_size(); ++k) coordinates.push_back(static_cast<int>(k));
-  for (const Layout::Linear& linear : layout.linear(c)) coordinates.push_back(linear.index);
-  return coordinates;
-}
-
 RowEvaluator::RowEvaluator(const KernelSamples& samples, const KernelModel& model)
     : samples_(samples), model_(model), loss_(model.loss) {
   model_.loss = Loss::kNone;
@@ -40,6 +33,16 @@ void RowEvaluator::Evaluate(const std::vector<std::uint32_t>& order, std::size_t
   for (const double*& measured : piece.measured) measured = gather(measured);
   piece.weight = gather(piece.weight);
   piece.solid_angle = gather(piece.solid_angle);
+  if (piece.gain_group != nullptr) {
+    gathered_groups_.resize(end - begin);
+    for (std::size_t i = begin; i < end; ++i) gathered_groups_[i - begin] = samples_.gain_group[order[i]];
+    piece.gain_group = gathered_groups_.data();
+  }
+  if (piece.turn != nullptr) {
+    gathered_turns_.resize(end - begin);
+    for (std::size_t i = begin; i < end; ++i) gathered_turns_[i - begin] = samples_.turn[order[i]];
+    piece.turn = gathered_turns_.data();
+  }
   piece.count = end - begin;
   Columns(piece, model_, 0, piece.count, &columns_);
 

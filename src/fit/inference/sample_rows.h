@@ -28,9 +28,6 @@ inline constexpr std::size_t kPiece = 256;
 // 0, 1, ..., count - 1.
 std::vector<std::uint32_t> FileOrder(std::size_t count);
 
-// Coordinate of the solver of each column of channel `c`; -1: a fixed parameter.
-std::vector<int> CoordinatesOfColumns(const Layout& layout, std::size_t c);
-
 // Evaluates the samples order[begin .. end) of a model.
 class RowEvaluator {
  public:
@@ -43,6 +40,8 @@ class RowEvaluator {
   KernelModel model_;  // without the loss
   Loss loss_;
   std::vector<std::vector<double>> gathered_, columns_;
+  std::vector<std::uint32_t> gathered_groups_;
+  std::vector<std::uint16_t> gathered_turns_;
 };
 
 }  // namespace lobefit

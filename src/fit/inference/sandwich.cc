@@ -173,6 +173,7 @@ class Filler {
       evaluator.Evaluate(order_, first, last, &piece.samples);
       for (std::size_t c = 0; c < piece.rows.size(); ++c)
         piece.rows[c].noalias() = piece.samples.rows[c] * bread_.whiten_row[c];
+      if (!bread_.lean.empty()) TakeOutGains(first, &piece);
       const auto count = static_cast<Eigen::Index>(last - first);
       moves.resize(m, count);
       for (Eigen::Index i = 0; i < count; ++i) leave_one_out.Evaluate(piece, i, moves.col(i).data());
@@ -193,7 +194,29 @@ class Filler {
     return run;
   }
 
+  // An incidence with the prior of its gain.
+  Cluster Whole(const Run::Part& part) const {
+    Cluster cluster = part.cluster;
+    if (bread_.lean.empty()) return cluster;
+    const Gains& gains = *problem_.gains();
+    const Eigen::VectorXd& lean = bread_.lean[part.group];
+    cluster.curvature += gains.precision() * lean * lean.transpose();
+    cluster.score -= gains.precision() * gains.logarithms()[part.group] * lean;
+    return cluster;
+  }
+
  private:
+  // With gains all columns are the border's.
+  void TakeOutGains(std::size_t first, WhitenedRows* piece) const {
+    for (std::size_t c = 0; c < piece->rows.size(); ++c) {
+      const Eigen::MatrixXd& rows = piece->samples.rows[c];
+      for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+        const std::uint32_t group = incidences_.group[order_[first + static_cast<std::size_t>(i)]];
+        piece->rows[c].row(i) -= rows(i, rows.cols() - 1) * bread_.lean[group].transpose();
+      }
+    }
+  }
+
   Run::Part Empty(std::uint32_t group) const {
     const Eigen::Index m = bread_.size();
     return {group, {Eigen::MatrixXd::Zero(m, m), Eigen::VectorXd::Zero(m)}};
@@ -203,7 +226,7 @@ class Filler {
     if (run->open.empty()) {
       run->open.push_back(*part);
     } else {
-      run->tally->Add(part->cluster);
+      run->tally->Add(Whole(*part));
     }
     part->cluster.curvature.setZero();
     part->cluster.score.setZero();
@@ -244,15 +267,24 @@ Filling FillSandwich(const Problem& problem, const Layout& layout, const std::ve
           open->cluster.curvature += part.cluster.curvature;
           open->cluster.score += part.cluster.score;
         } else {
-          if (open) tally.Add(open->cluster);
+          if (open) tally.Add(filler.Whole(*open));
           open = std::move(part);
         }
       }
       tally.Merge(*run.tally);
     }
   }
-  if (open) tally.Add(open->cluster);
-  return {Symmetric(samples), Symmetric(tally.filling()), tally.DegreesOfFreedom()};
+  if (open) tally.Add(filler.Whole(*open));
+  Filling filling = {Symmetric(samples) + bread.prior_of_gains + bread.prior_of_coordinates, Symmetric(tally.filling()),
+                     tally.DegreesOfFreedom()};
+  // The variance that a prior gives is known, not estimated from clusters.
+  for (Eigen::Index k = 0; k < numbers.cols(); ++k) {
+    const double known = numbers.col(k).dot(bread.prior_of_coordinates * numbers.col(k));
+    const double estimated = numbers.col(k).dot(filling.clusters * numbers.col(k));
+    if (known > 0 && estimated > 0) filling.freedom(k) *= (1 + known / estimated) * (1 + known / estimated);
+  }
+  filling.clusters += bread.prior_of_coordinates;
+  return filling;
 }
 
 }  // namespace lobefit

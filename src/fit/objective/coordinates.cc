@@ -9,6 +9,9 @@
 namespace lobefit {
 namespace {
 
+// The cosine of the difference angle for which the rules of means are made: 60 degrees.
+constexpr double kMeanCosine = 0.5;
+
 constexpr const char* kSlopeNames[] = {"slope_x", "slope_y", "ln a", "b", "ln c"};
 // Slopes of 10 are normals 84 degrees from the surface's; widths from 1e-4 (a mirror) to 10 (nearly uniform over the
 // hemisphere).
@@ -35,10 +38,13 @@ Layout::Layout(const Recipe& recipe, const std::vector<std::string>& channels)
   for (std::size_t lobe = 0; lobe < recipe.model.lobes.size(); ++lobe) {
     AddShape(lobe, parameters, FirstParameter(recipe.model, lobe));
   }
+  first_angle_ = coordinates_.size();
+  if (recipe.instrument.alignment) AddAngles();
   shape_size_ = coordinates_.size();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i].group != ParameterGroup::kShape) AddLinear(parameters[i], recipe.parameters[i], channels);
   }
+  if (recipe.instrument.offset) AddOffset(channels);
   if (coordinates_.empty())
     throw InputError("recipe '" + recipe.name + "': every parameter is fixed; free at least one");
 }
@@ -75,6 +81,7 @@ void Layout::AddShape(std::size_t lobe, const std::vector<Parameter>& parameters
     }
   }
   AddProfile(lobe, parameters, &shape);
+  AddMean(lobe, &shape);
   shapes_.push_back(shape);
 }
 
@@ -106,6 +113,51 @@ std::vector<double> Layout::ProfileAt(std::size_t lobe, const double* u, std::ve
     if (slopes != nullptr) slopes->push_back(IsGamma(lobe) ? std::exp(x) : 1.0);
   }
   return values;
+}
+
+void Layout::AddMean(std::size_t lobe, Shape* shape) {
+  const Aperture aperture = recipe_.aperture();
+  if (!aperture.any()) return;
+  const Lobe& kind = recipe_.model.lobes[lobe];
+  const double larger = std::max(aperture.source, aperture.detector),
+               smaller = std::min(aperture.source, aperture.detector);
+  double width = recipe_.instrument.finest_width > 0 ? recipe_.instrument.finest_width : smaller;
+  if (!HasMeanInClosedForm(kind)) {
+    width = larger / (2 * kMostRelativeWidth * kMeanCosine) * (1 + 1e-9);
+    // Width coordinates: ln a and ln c, or ln alpha.
+    for (std::size_t k = 0; k < shape->entries.size(); ++k) {
+      const int i = shape->entries[k];
+      if (shape->slope ? i != 2 && i != 4 : i >= 2) continue;
+      Coordinate& coordinate = coordinates_[shape->first + k];
+      coordinate.low = std::max(coordinate.low, std::log(width));
+      if (coordinate.low < coordinate.high) continue;
+      throw InputError("recipe '" + recipe_.name + "': the bounds of " + coordinate.name +
+                       " allow no lobe that is wide enough for the aperture; allowed are widths above " +
+                       std::to_string(width) + " with the distribution '" + NameOf(NdfChoices(), kind.ndf) +
+                       "', any with GGX and Smith masking");
+    }
+  }
+  shape->mean =
+      std::make_shared<const LobeMeanRule>(MakeLobeMeanRule(kind, aperture, std::max(width, 1e-6), kMeanCosine));
+}
+
+void Layout::AddAngles() {
+  const AlignmentRecipe& alignment = *recipe_.instrument.alignment;
+  for (std::size_t k = 0; k < alignment.azimuths.size() + 1; ++k) {
+    const double prior = k < 2 ? alignment.prior : alignment.prior_turn;
+    const std::string name = k == 0 ? "e_x" : k == 1 ? "e_y" : "e_z[" + std::to_string(k) + "]";
+    // Beyond them a prior of this width has no weight that matters.
+    const double bound = std::min(20 * prior, kPi / 18);
+    coordinates_.push_back({name, -bound, bound, 1 / (prior * prior), true});
+  }
+}
+
+void Layout::AddOffset(const std::vector<std::string>& channels) {
+  constexpr double kMostOffset = 1e6;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    linear_[c].push_back({static_cast<int>(coordinates_.size()), 0, 0});
+    coordinates_.push_back({"offset[" + channels[c] + "]", -kMostOffset, kMostOffset});
+  }
 }
 
 void Layout::AddLinear(const Parameter& parameter, const ParameterRecipe& entry,
@@ -154,6 +206,11 @@ KernelModel Layout::ToKernel(const double* u) const {
   kernel.transform = TransformOf(recipe_.metric, recipe_.noise);
   kernel.loss = recipe_.loss;
   kernel.loss_scale = recipe_.loss_scale;
+  kernel.gains = recipe_.instrument.drift.has_value();
+  if (recipe_.instrument.alignment)
+    kernel.alignment = {recipe_.instrument.alignment->azimuths, {u + first_angle_, u + shape_size_}};
+  for (std::size_t c = 0; recipe_.instrument.offset && c < channels_; ++c)
+    kernel.offset.push_back(Value(linear_[c].back(), u));
   kernel.diffuse_kind = recipe_.model.diffuse;
   kernel.channels = channels_;
   if (std::any_of(coordinates_.begin(), coordinates_.end(), [](const Coordinate& c) { return c.prior > 0; })) {
@@ -165,6 +222,7 @@ KernelModel Layout::ToKernel(const double* u) const {
     const Shape& shape = shapes_[l];
     KernelLobe lobe;
     lobe.kind = recipe_.model.lobes[l];
+    lobe.mean = shape.mean;
     lobe.columns = shape.columns();
     lobe.jacobian.assign(ShapeParameters(lobe.kind) * lobe.columns, 0.0);
     SlopeCoordinates slope;
@@ -236,15 +294,21 @@ void Layout::CopyProfiles(const std::vector<double>& from, std::vector<double>* 
   }
 }
 
+std::vector<int> Layout::CoordinatesOfColumns(std::size_t c) const {
+  std::vector<int> index;
+  for (std::size_t k = 0; k < shape_size_; ++k) index.push_back(static_cast<int>(k));
+  for (const Linear& linear : linear_[c]) index.push_back(linear.index);
+  if (recipe_.instrument.drift) index.push_back(-1);
+  return index;
+}
+
 void Layout::Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const {
   const auto n = static_cast<Eigen::Index>(size());
   hessian->setZero(n, n);
   gradient->setZero(n);
   for (std::size_t c = 0; c < channels_; ++c) {
-    // Coordinate of each column of this channel; -1 for a fixed one, -2 for the residual.
-    std::vector<int> index;
-    for (std::size_t k = 0; k < shape_size_; ++k) index.push_back(static_cast<int>(k));
-    for (const Linear& linear : linear_[c]) index.push_back(linear.index);
+    // -2 for the residual.
+    std::vector<int> index = CoordinatesOfColumns(c);
     index.push_back(-2);
     const double* entry = sums.gram[c].data();
     for (std::size_t i = 0; i < index.size(); ++i) {
@@ -304,7 +368,7 @@ ParameterValues Layout::Report(const double* u) const {
 }
 
 Eigen::MatrixXd Layout::ReportJacobian(const double* u) const {
-  std::size_t rows = linear_[0].size() * channels_;
+  std::size_t rows = linear_[0].size() * channels_ + shape_size_ - first_angle_;
   for (const Lobe& lobe : recipe_.model.lobes) rows += ShapeParameters(lobe);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(size()));
   Eigen::Index row = 0;
@@ -341,6 +405,8 @@ Eigen::MatrixXd Layout::ReportJacobian(const double* u) const {
     for (std::size_t k = 0; k < FresnelParameters(recipe_.model.lobes[l].fresnel); ++k) add_linear();
   }
   for (std::size_t k = 0; k < DiffuseParameters(recipe_.model.diffuse); ++k) add_linear();
+  for (std::size_t k = first_angle_; k < shape_size_; ++k, ++row) jacobian(row, static_cast<Eigen::Index>(k)) = 1;
+  if (recipe_.instrument.offset) add_linear();
   return jacobian;
 }
 

@@ -6,6 +6,7 @@
 // for all.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct Coordinate {
   // Weight of a prior: the cost grows by s^2 prior u^2 / 2, s^2 the mean square of the residuals. That of GGX for the
   // coefficients of a profile: where nothing was measured they stay near it (math.md 8.1, tau = 2).
   double prior = 0;
+  // The prior is what is known of the coordinate from elsewhere, 1 / prior its variance, and counts as one more
+  // observation; else it is a preference, and says nothing of the error.
+  bool observed = false;
 };
 
 class Layout {
@@ -32,8 +36,10 @@ class Layout {
   std::size_t size() const { return coordinates_.size(); }
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
   std::size_t channels() const { return channels_; }
-  // Coordinates [0, shape_size()) belong to shapes, lobe by lobe; the rest are Fresnel parameters and albedos.
+  // Coordinates [0, shape_size()) are common to the channels: shapes, lobe by lobe, then the angles of the alignment,
+  // from first_angle() on. The rest are Fresnel parameters, albedos and offsets.
   std::size_t shape_size() const { return shape_size_; }
+  std::size_t first_angle() const { return first_angle_; }
   const Recipe& recipe() const { return recipe_; }
   // True where the lobe moves in slope coordinates.
   bool in_slope_space(std::size_t lobe) const { return shapes_[lobe].slope; }
@@ -48,6 +54,9 @@ class Layout {
   // The coordinates of profiles, from one point to another.
   void CopyProfiles(const std::vector<double>& from, std::vector<double>* to) const;
 
+  // Coordinate of each column of channel `c` of the kernel, the residual's left out; -1: a fixed parameter, or the gain.
+  std::vector<int> CoordinatesOfColumns(std::size_t c) const;
+
   // Gauss-Newton matrix J^T J and gradient J^T r in solver coordinates from the sums over samples.
   void Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
   // Scores of the kernel (shape columns, then [channel][linear]) as scores of the solver's coordinates, arrays by
@@ -61,32 +70,38 @@ class Layout {
     double value = 0;
     double start = 0;
   };
-  // Those of a channel: the lobes' Fresnel parameters, then the diffuse albedo if the model has one.
+  // Those of a channel: the lobes' Fresnel parameters, then the diffuse albedo if the model has one, then the offset.
   const std::vector<Linear>& linear(std::size_t channel) const { return linear_[channel]; }
 
   // Reported values at `u`, inside units, in the order of Parameters(model).
   ParameterValues Report(const double* u) const;
-  // d(reported entry) / d(coordinate), rows over the flattened entries of Report. Rows of a lobe whose angles are not
+  // d(reported entry) / d(coordinate), rows over the flattened entries of Report, then over the coordinates of the
+  // instrument: angles of the alignment, offsets of the channels. Rows of a lobe whose angles are not
   // differentiable (equal alphas) are NaN.
   Eigen::MatrixXd ReportJacobian(const double* u) const;
 
  private:
   struct Shape {
-    bool slope = false;                 // slope coordinates, else ln alpha and angles
-    std::vector<int> entries;           // slope coordinates, or ellipsoid parameters, that are free
-    std::vector<std::size_t> profile;   // free parameters of the profile, whose coordinates follow
-    std::vector<double> profile_start;  // of all of them, free or not
+    bool slope = false;                        // slope coordinates, else ln alpha and angles
+    std::vector<int> entries;                  // slope coordinates, or ellipsoid parameters, that are free
+    std::vector<std::size_t> profile;          // free parameters of the profile, whose coordinates follow
+    std::vector<double> profile_start;         // of all of them, free or not
+    bool tied = false;                         // alpha_y follows alpha_x
+    double fixed[5] = {1, 1, 0, 0, 0};         // ellipsoid parameters that are not free
+    std::size_t first = 0;                     // first coordinate
+    std::shared_ptr<const LobeMeanRule> mean;  // over the recipe's aperture; null: a point
     std::size_t columns() const { return entries.size() + profile.size(); }
-    bool tied = false;                  // alpha_y follows alpha_x
-    double fixed[5] = {1, 1, 0, 0, 0};  // ellipsoid parameters that are not free
-    std::size_t first = 0;              // first coordinate
   };
 
   void AddShape(std::size_t lobe, const std::vector<Parameter>& parameters, std::size_t first_parameter);
   void AddProfile(std::size_t lobe, const std::vector<Parameter>& parameters, Shape* shape);
+  // The mean over the recipe's aperture, and bounds that keep the lobe as wide as its cubature can take.
+  void AddMean(std::size_t lobe, Shape* shape);
   // Parameters of the profile at `u`, and where asked d(parameter) / d(coordinate) of the free ones.
   std::vector<double> ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes = nullptr) const;
   bool IsGamma(std::size_t lobe) const { return FamilyOf(recipe_.model.lobes[lobe].ndf) == NdfFamily::kStudent; }
+  void AddAngles();
+  void AddOffset(const std::vector<std::string>& channels);
   void AddLinear(const Parameter& parameter, const ParameterRecipe& entry, const std::vector<std::string>& channels);
   double Value(const Linear& linear, const double* u) const {
     return linear.index < 0 ? linear.value : u[linear.index];
@@ -96,7 +111,7 @@ class Layout {
 
   Recipe recipe_;
   std::size_t channels_;
-  std::size_t shape_size_ = 0;
+  std::size_t first_angle_ = 0, shape_size_ = 0;
   std::vector<Coordinate> coordinates_;
   std::vector<Shape> shapes_;
   std::vector<std::vector<Linear>> linear_;

@@ -1,309 +1,22 @@
 #include "lobefit/fit/objective/kernel.h"
 
 #include <algorithm>
-#include <cmath>
-#include <memory>
-#include <optional>
-#include <span>
-#include <utility>
+#include <unordered_map>
 
-#include "lobefit/core/brdf/diffuse.h"
-#include "lobefit/core/brdf/diffuse_facets.h"
-#include "lobefit/core/brdf/lobe.h"
 #include "lobefit/fit/objective/kernel_arrays.h"
+#include "lobefit/fit/objective/kernel_block.h"
 
 namespace lobefit {
-namespace {
-
-// 256 samples: the columns of one channel of a one-lobe model take 16 KB, half of a first-level cache.
-constexpr std::size_t kBlock = 256;
-
-// One block of samples: the model's values, residuals and columns. Arrays of kBlock, padded so that pads add nothing to
-// any sum.
-class Block {
- public:
-  Block(const KernelSamples& samples, const KernelModel& model, bool gradient)
-      : samples_(samples), model_(model), gradient_(gradient) {
-    const std::size_t lobes = model.lobes.size(), channels = model.channels;
-    for (const KernelLobe& lobe : model.lobes) {
-      first_fresnel_.push_back(fresnel_size_);
-      fresnel_size_ += FresnelParameters(lobe.kind.fresnel);
-      first_contracted_.push_back(contracted_size_);
-      contracted_size_ += lobe.columns;
-      shape_size_ = std::max(shape_size_, ShapeParameters(lobe.kind));
-    }
-    // Behind the lobes' columns those of the first lobe's facets.
-    const std::size_t facets = model.diffuse_kind == Diffuse::kMicrofacet && lobes > 0 ? model.lobes[0].columns : 0;
-    const bool directional = IsDirectional(model.diffuse_kind) && !model.diffuse.empty();
-    const std::size_t diffuse_size = model.diffuse.empty() ? 0 : DiffuseParameters(model.diffuse_kind);
-    const bool linear = std::all_of(model.lobes.begin(), model.lobes.end(), IsLinear);
-    // Arrays, and how many blocks each needs, in one piece of memory: a fit of 200 samples is made of passes that take
-    // 5 us.
-    const std::pair<std::span<double>*, std::size_t> arrays[] = {
-        {&specular_, lobes},
-        {&gradients_, gradient ? shape_size_ : 0},
-        {&contracted_, gradient ? contracted_size_ + facets : 0},
-        {&cos_d_, lobes},
-        {&diffuse_, directional ? channels : 1},
-        {&diffuse_gradient_, directional && gradient ? channels * diffuse_size : 0},
-        {&sqrt_weight_, 1},
-        {&p5_, lobes},
-        {&one_minus_p5_, lobes},
-        {&ones_, 1},
-        {&factor_, linear ? 0 : channels * lobes},
-        {&factor_gradient_, linear ? 0 : channels * fresnel_size_},
-        {&f_, channels},
-        {&residual_, channels},
-        {&slope_, gradient ? channels : 0},
-        {&columns_, gradient ? model.columns() : 0},
-    };
-    std::size_t blocks = 0;
-    for (const auto& [array, count] : arrays) blocks += count;
-    memory_ = std::make_unique_for_overwrite<double[]>(blocks * kBlock);
-    double* next = memory_.get();
-    for (const auto& [array, count] : arrays) {
-      *array = {next, count * kBlock};
-      next += count * kBlock;
-    }
-    std::fill(diffuse_.begin(), diffuse_.end(), kInvPi);
-    std::fill(ones_.begin(), ones_.end(), 1.0);
-    if (model.diffuse_kind == Diffuse::kMicrofacet && !model.diffuse.empty())
-      facets_.emplace(model.lobes[0].kind, model.lobes[0].shape.slope);
-    for (std::size_t c = 0; directional && c < channels; ++c)
-      directional_.emplace_back(model.diffuse_kind, model.diffuse.data() + c * diffuse_size);
-  }
-
-  // Values of samples [begin, begin + count), count <= kBlock.
-  void Evaluate(std::size_t begin, std::size_t count) {
-    count_ = count;
-    padded_ = (count + 7) / 8 * 8;  // no target has more than 8 lanes
-    DirectionArrays directions = {};
-    const double** fields[] = {&directions.wi_x, &directions.wi_y, &directions.wi_z,
-                               &directions.wo_x, &directions.wo_y, &directions.wo_z};
-    for (std::size_t k = 0; k < 6; ++k) *fields[k] = samples_.direction[k] + begin;
-    directions.count = count;
-    cos_i_ = Padded(directions.wi_z, 0.0, &cos_i_pad_);
-    for (std::size_t l = 0; l < model_.lobes.size(); ++l) EvaluateLobe(l, directions);
-    for (std::size_t c = 0; c < directional_.size(); ++c) EvaluateDiffuse(c, directions);
-    if (facets_) {
-      facets_->Evaluate(directions, diffuse_.data(), gradient_ ? gradients_.data() : nullptr);
-      std::fill(diffuse_.begin() + static_cast<std::ptrdiff_t>(count_), diffuse_.end(), 0.0);
-      if (gradient_) ContractGradients(0, diffuse_contracted());
-    }
-    for (std::size_t c = 0; c < model_.channels; ++c) {
-      double* f = f_.data() + c * kBlock;
-      std::fill_n(f, padded_, 0.0);
-      if (!directional_.empty()) {
-        arrays::AddScaled(diffuse_.data() + c * kBlock, 1.0, padded_, f);
-      } else if (!model_.diffuse.empty()) {
-        arrays::AddScaled(diffuse_.data(), model_.diffuse[c], padded_, f);
-      }
-      for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
-        const Factor factor = EvaluateFresnel(l, c);
-        arrays::AddFactor(specular_.data() + l * kBlock, factor.constant, factor.slope, factor.array, padded_, f);
-      }
-    }
-  }
-
-  // Residuals (and slopes), reweighted by the loss. Returns the sum of rho.
-  double Residuals(std::size_t begin, double* sum_robust_weight) {
-    const double* sqrt_weight = SqrtWeight(begin);
-    for (std::size_t c = 0; c < model_.channels; ++c) {
-      const double* measured = Padded(samples_.measured[c] + begin, 1.0, &measured_pad_);
-      lobefit::Residuals(model_.transform, f_.data() + c * kBlock, cos_i_, measured, sqrt_weight, padded_,
-                         residual_.data() + c * kBlock, gradient_ ? slope_.data() + c * kBlock : nullptr);
-    }
-    double sum = 0;
-    if (model_.loss == Loss::kNone) {
-      for (std::size_t c = 0; c < model_.channels; ++c)
-        sum += arrays::SumOfSquares(residual_.data() + c * kBlock, padded_);
-      *sum_robust_weight += static_cast<double>(count_);
-      return sum;
-    }
-    for (std::size_t i = 0; i < count_; ++i) {
-      double s = 0;
-      for (std::size_t c = 0; c < model_.channels; ++c) s += residual_[c * kBlock + i] * residual_[c * kBlock + i];
-      const LossValue loss = EvaluateLoss(model_.loss, model_.loss_scale, s);
-      sum += loss.rho;
-      *sum_robust_weight += loss.first;
-      const double root = std::sqrt(loss.first);
-      for (std::size_t c = 0; c < model_.channels; ++c) {
-        residual_[c * kBlock + i] *= root;
-        if (gradient_) slope_[c * kBlock + i] *= root;
-      }
-    }
-    return sum;
-  }
-
-  // Columns of one channel, kBlock apart; the last is the residual.
-  const double* Columns(std::size_t c) {
-    const double* slope = slope_.data() + c * kBlock;
-    double* to = columns_.data();
-    for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
-      const bool facets = facets_ && l == 0;
-      const Factor factor = FactorOf(l, c);
-      arrays::ShapeColumn(slope, factor.constant, factor.slope, factor.array, contracted(l),
-                          facets ? model_.diffuse[c] : 0.0, facets ? diffuse_contracted() : nullptr,
-                          model_.lobes[l].columns, padded_, kBlock, to);
-      to += model_.lobes[l].columns * kBlock;
-    }
-    for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
-      for (std::size_t k = 0; k < FresnelParameters(model_.lobes[l].kind.fresnel); ++k, to += kBlock) {
-        arrays::Product(slope, specular_.data() + l * kBlock, FactorGradient(l, k, c), padded_, to);
-      }
-    }
-    for (std::size_t k = 0; k < (directional_.empty() ? 0 : DiffuseParameters(model_.diffuse_kind)); ++k, to += kBlock)
-      arrays::Multiply(slope, diffuse_gradient(c, k), padded_, to);
-    if (directional_.empty() && !model_.diffuse.empty()) {
-      arrays::Multiply(slope, diffuse_.data(), padded_, to);
-      to += kBlock;
-    }
-    std::copy_n(residual_.data() + c * kBlock, padded_, to);
-    return columns_.data();
-  }
-
-  std::size_t padded() const { return padded_; }
-  const double* f(std::size_t c) const { return f_.data() + c * kBlock; }
-
- private:
-  void EvaluateLobe(std::size_t l, const DirectionArrays& directions) {
-    const KernelLobe& lobe = model_.lobes[l];
-    double* specular = specular_.data() + l * kBlock;
-    double* cos_d = cos_d_.data() + l * kBlock;
-    SpecularLobe(directions, lobe.kind, lobe.shape, specular, cos_d, gradient_ ? gradients_.data() : nullptr);
-    std::fill(specular + count_, specular + padded_, 0.0);
-    std::fill(cos_d + count_, cos_d + padded_, 1.0);
-    if (IsLinear(lobe)) arrays::Schlick(cos_d, padded_, p5_.data() + l * kBlock, one_minus_p5_.data() + l * kBlock);
-    if (gradient_) ContractGradients(l, contracted(l));
-  }
-
-  void EvaluateDiffuse(std::size_t c, const DirectionArrays& d) {
-    double* value = diffuse_.data() + c * kBlock;
-    for (std::size_t i = 0; i < count_; ++i) {
-      double gradient[2];
-      value[i] = directional_[c].Evaluate({d.wi_x[i], d.wi_y[i], d.wi_z[i]}, {d.wo_x[i], d.wo_y[i], d.wo_z[i]},
-                                          gradient_ ? gradient : nullptr);
-      for (std::size_t k = 0; gradient_ && k < 2; ++k) diffuse_gradient(c, k)[i] = gradient[k];
-    }
-    std::fill(value + count_, value + padded_, 0.0);
-    for (std::size_t k = 0; gradient_ && k < 2; ++k)
-      std::fill(diffuse_gradient(c, k) + count_, diffuse_gradient(c, k) + padded_, 0.0);
-  }
-
-  // gradients_, by slope coordinates, to the solver's coordinates of lobe l. They were written with a stride of
-  // `count_`: the last, shorter block is spread to kBlock first.
-  void ContractGradients(std::size_t l, double* to) {
-    double* gradients = gradients_.data();
-    const std::size_t size = ShapeParameters(model_.lobes[l].kind);
-    for (std::size_t j = size; j-- > 0 && count_ < kBlock;) {
-      std::copy_backward(gradients + j * count_, gradients + (j + 1) * count_, gradients + j * kBlock + count_);
-      std::fill(gradients + j * kBlock + count_, gradients + j * kBlock + padded_, 0.0);
-    }
-    arrays::Contract(gradients, model_.lobes[l].jacobian.data(), size, model_.lobes[l].columns, padded_, kBlock, to);
-  }
-
-  // Fresnel factor of lobe l in channel c, constant + slope * array; for kinds that are not linear in their parameters
-  // evaluated here, with their derivatives.
-  struct Factor {
-    double constant, slope;
-    const double* array;
-  };
-  Factor EvaluateFresnel(std::size_t l, std::size_t c) {
-    const KernelLobe& lobe = model_.lobes[l];
-    if (IsLinear(lobe)) return LinearFactor(l, c);
-    const std::size_t size = FresnelParameters(lobe.kind.fresnel);
-    double* value = factor_.data() + (c * model_.lobes.size() + l) * kBlock;
-    for (std::size_t i = 0; i < padded_; ++i) {
-      double dF[kMaxFresnelParameters];
-      value[i] = FresnelFactor(lobe.kind.fresnel, lobe.fresnel.data() + c * size, cos_d_[l * kBlock + i],
-                               gradient_ ? dF : nullptr);
-      for (std::size_t k = 0; gradient_ && k < size; ++k) factor_gradient(c, first_fresnel_[l] + k)[i] = dF[k];
-    }
-    return {0, 1, value};
-  }
-  static bool IsLinear(const KernelLobe& lobe) {
-    return lobe.kind.fresnel == Fresnel::kSchlick || lobe.kind.fresnel == Fresnel::kNone;
-  }
-  Factor LinearFactor(std::size_t l, std::size_t c) const {
-    const KernelLobe& lobe = model_.lobes[l];
-    if (lobe.kind.fresnel == Fresnel::kNone) return {lobe.fresnel[c], 0, ones_.data()};
-    return {lobe.fresnel[c], 1 - lobe.fresnel[c], p5_.data() + l * kBlock};
-  }
-  Factor FactorOf(std::size_t l, std::size_t c) const {
-    if (IsLinear(model_.lobes[l])) return LinearFactor(l, c);
-    return {0, 1, factor_.data() + (c * model_.lobes.size() + l) * kBlock};
-  }
-  // Derivative of the factor by the k-th parameter of lobe l.
-  const double* FactorGradient(std::size_t l, std::size_t k, std::size_t c) {
-    if (model_.lobes[l].kind.fresnel == Fresnel::kNone) return ones_.data();
-    if (model_.lobes[l].kind.fresnel == Fresnel::kSchlick) return one_minus_p5_.data() + l * kBlock;
-    return factor_gradient(c, first_fresnel_[l] + k);
-  }
-  double* factor_gradient(std::size_t c, std::size_t k) {
-    return factor_gradient_.data() + (c * fresnel_size_ + k) * kBlock;
-  }
-  double* contracted(std::size_t l) { return contracted_.data() + first_contracted_[l] * kBlock; }
-  double* diffuse_contracted() { return contracted_.data() + contracted_size_ * kBlock; }
-  double* diffuse_gradient(std::size_t c, std::size_t k) {
-    return diffuse_gradient_.data() + (c * DiffuseParameters(model_.diffuse_kind) + k) * kBlock;
-  }
-
-  // Square roots of the weights of this block, 0 for pads; null where all are 1.
-  const double* SqrtWeight(std::size_t begin) {
-    const bool weighted =
-        samples_.weight != nullptr || samples_.solid_angle != nullptr || samples_.sin_i || samples_.sin_o;
-    if (!weighted && padded_ == count_) return nullptr;
-    std::fill_n(sqrt_weight_.data(), count_, 1.0);
-    std::fill(sqrt_weight_.begin() + static_cast<std::ptrdiff_t>(count_), sqrt_weight_.end(), 0.0);
-    for (const double* factor : {samples_.weight, samples_.solid_angle}) {
-      for (std::size_t i = 0; factor != nullptr && i < count_; ++i) sqrt_weight_[i] *= factor[begin + i];
-    }
-    if (samples_.sin_i) arrays::TimesSine(cos_i_, padded_, sqrt_weight_.data());
-    if (samples_.sin_o) {
-      const double* cos_o = Padded(samples_.direction[5] + begin, 0.0, &cos_o_pad_);
-      arrays::TimesSine(cos_o, padded_, sqrt_weight_.data());
-    }
-    if (weighted) arrays::FinishWeight(samples_.weight_scale, padded_, sqrt_weight_.data());
-    return sqrt_weight_.data();
-  }
-
-  // An input array of this block: in place where the block is full, else a copy with `pad` behind it.
-  const double* Padded(const double* from, double pad, std::vector<double>* copy) const {
-    if (padded_ == count_) return from;
-    copy->assign(from, from + count_);
-    copy->resize(padded_, pad);
-    return copy->data();
-  }
-
-  const KernelSamples& samples_;
-  const KernelModel& model_;
-  const bool gradient_;
-  std::size_t count_ = 0, padded_ = 0;
-  const double* cos_i_ = nullptr;
-  std::optional<DiffuseFacets> facets_;
-  std::vector<DirectionalDiffuse> directional_;  // [channel]
-  std::size_t shape_size_ = kEllipseParameters;  // most of a lobe
-  std::size_t contracted_size_ = 0;              // columns of all lobes' shapes
-  std::vector<std::size_t> first_contracted_;    // of each lobe
-  std::size_t fresnel_size_ = 0;                 // of all lobes
-  std::vector<std::size_t> first_fresnel_;       // of each lobe
-  std::unique_ptr<double[]> memory_;
-  std::span<double> specular_, gradients_, contracted_, cos_d_, p5_, one_minus_p5_, ones_, factor_, factor_gradient_,
-      diffuse_, diffuse_gradient_;
-  std::span<double> f_, residual_, slope_, columns_, sqrt_weight_;
-  std::vector<double> cos_i_pad_, cos_o_pad_, measured_pad_;
-};
-
-}  // namespace
 
 std::size_t KernelModel::shape_columns() const {
   std::size_t sum = 0;
   for (const KernelLobe& lobe : lobes) sum += lobe.columns;
-  return sum;
+  return sum + alignment.angles.size();
 }
 
 std::size_t KernelModel::columns() const {
-  std::size_t sum = shape_columns() + (diffuse.empty() ? 0 : DiffuseParameters(diffuse_kind)) + 1;
+  std::size_t sum = shape_columns() + (diffuse.empty() ? 0 : DiffuseParameters(diffuse_kind)) +
+                    (offset.empty() ? 0 : 1) + (gains ? 1 : 0) + 1;
   for (const KernelLobe& lobe : lobes) sum += FresnelParameters(lobe.kind.fresnel);
   return sum;
 }
@@ -314,11 +27,38 @@ void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gra
   const std::size_t columns = model.columns();
   if (gradient && sums->gram.empty())
     sums->gram.assign(model.channels, std::vector<double>(columns * (columns + 1) / 2, 0.0));
+  const bool arrows = gradient && model.gains && samples.gain != nullptr;
+  std::unordered_map<std::uint32_t, std::size_t> place;
   for (std::size_t i = begin; i < end; i += kBlock) {
     block.Evaluate(i, std::min(kBlock, end - i));
     sums->sum_rho += block.Residuals(i, &sums->sum_robust_weight);
     for (std::size_t c = 0; gradient && c < model.channels; ++c) {
-      arrays::AddGram(block.Columns(c), columns, block.padded(), kBlock, sums->gram[c].data());
+      const double* from = block.Columns(c);
+      arrays::AddGram(from, columns, block.padded(), kBlock, sums->gram[c].data());
+      if (!arrows) continue;
+      block.AddGainProducts(i, c, from, columns, [&](std::uint32_t group) {
+        const auto [found, is_new] = place.try_emplace(group, sums->arrows.size());
+        if (is_new) sums->arrows.push_back({group, std::vector<double>(model.channels * columns, 0.0)});
+        return sums->arrows[found->second].products.data() + c * columns;
+      });
+    }
+  }
+}
+
+void SumGains(const KernelSamples& samples, const KernelModel& model, std::size_t begin, std::size_t end,
+              GainSums* sums) {
+  Block block(samples, model, false, true);
+  double unused = 0;
+  for (std::size_t i = begin; i < end; i += kBlock) {
+    block.Evaluate(i, std::min(kBlock, end - i));
+    sums->sum_of_squares += block.Residuals(i, &unused);
+    for (std::size_t c = 0; c < model.channels; ++c) {
+      block.AddGainProducts(i, c, block.gain_column(c), 1, [&](std::uint32_t g) { return &sums->curvature[g]; });
+      block.AddGainProducts(i, c, block.residual(c), 1, [&](std::uint32_t g) { return &sums->slope[g]; });
+      for (std::size_t k = 0; k < block.padded(); ++k) {
+        const double product = block.gain_column(c)[k] * block.residual(c)[k];
+        sums->weighted_squares += product * product;
+      }
     }
   }
 }

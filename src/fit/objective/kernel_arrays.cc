@@ -95,6 +95,16 @@ void ProductArrays(const double* a, const double* b, const double* c, std::size_
     hn::StoreU(hn::Mul(hn::Mul(Load(a + i), Load(b + i)), Load(c + i)), D64(), to + i);
 }
 
+// to += slope * specular * scale * by_argument * gradient; by_argument null: 1.
+void ArgumentColumnArrays(const double* slope, const double* specular, double scale, const double* by_argument,
+                          const double* gradient, std::size_t n, double* to) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
+    V64 product = hn::Mul(hn::Mul(Load(slope + i), Load(specular + i)), hn::Mul(Constant(scale), Load(gradient + i)));
+    if (by_argument != nullptr) product = hn::Mul(product, Load(by_argument + i));
+    hn::StoreU(hn::Add(Load(to + i), product), D64(), to + i);
+  }
+}
+
 // Sum of squares.
 double SquareArrays(const double* a, std::size_t n) {
   const D64 d;
@@ -151,6 +161,7 @@ HWY_EXPORT(FinishWeightArrays);
 HWY_EXPORT(TimesSineArrays);
 HWY_EXPORT(ShapeColumnArrays);
 HWY_EXPORT(ProductArrays);
+HWY_EXPORT(ArgumentColumnArrays);
 HWY_EXPORT(MultiplyArrays);
 HWY_EXPORT(SquareArrays);
 HWY_EXPORT(GramArrays);
@@ -179,6 +190,10 @@ void ShapeColumn(const double* slope, double constant, double factor_slope, cons
                  std::size_t n, std::size_t stride, double* to) {
   HWY_DYNAMIC_DISPATCH(ShapeColumnArrays)
   (slope, constant, factor_slope, factor, gradient, albedo, diffuse_gradient, columns, n, stride, to);
+}
+void AddArgumentColumn(const double* slope, const double* specular, double scale, const double* by_argument,
+                       const double* gradient, std::size_t n, double* to) {
+  HWY_DYNAMIC_DISPATCH(ArgumentColumnArrays)(slope, specular, scale, by_argument, gradient, n, to);
 }
 void Product(const double* a, const double* b, const double* c, std::size_t n, double* to) {
   HWY_DYNAMIC_DISPATCH(ProductArrays)(a, b, c, n, to);

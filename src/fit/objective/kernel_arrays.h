@@ -32,6 +32,10 @@ void ShapeColumn(const double* slope, double constant, double factor_slope, cons
                  const double* gradient, double albedo, const double* diffuse_gradient, std::size_t columns,
                  std::size_t n, std::size_t stride, double* to);
 
+// to += slope * specular * scale * by_argument * gradient: what moves a mean's Fresnel argument; by_argument null: 1.
+void AddArgumentColumn(const double* slope, const double* specular, double scale, const double* by_argument,
+                       const double* gradient, std::size_t n, double* to);
+
 // to = a * b * c.
 void Product(const double* a, const double* b, const double* c, std::size_t n, double* to);
 

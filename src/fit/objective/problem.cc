@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "lobefit/base/error.h"
+#include "lobefit/fit/objective/gains.h"
 
 namespace lobefit {
 namespace {
@@ -11,6 +13,23 @@ namespace {
 // At most 64 runs: enough to share work among the threads of one machine; at least 1024 samples a run.
 constexpr std::size_t kMaxRuns = 64;
 constexpr std::size_t kMinRun = 1024;
+
+// Adds those of later runs to those of the first, group by group in the order of the runs.
+void MergeArrows(const std::vector<KernelSums>& partial, std::vector<GainArrow>* arrows) {
+  std::unordered_map<std::uint32_t, std::size_t> place;
+  for (std::size_t k = 0; k < arrows->size(); ++k) place[(*arrows)[k].group] = k;
+  for (std::size_t run = 1; run < partial.size(); ++run) {
+    for (const GainArrow& arrow : partial[run].arrows) {
+      const auto [found, is_new] = place.try_emplace(arrow.group, arrows->size());
+      if (is_new) {
+        arrows->push_back(arrow);
+        continue;
+      }
+      std::vector<double>& to = (*arrows)[found->second].products;
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] += arrow.products[k];
+    }
+  }
+}
 
 }  // namespace
 
@@ -25,11 +44,17 @@ void SetAsideForRecipe(const Recipe& recipe, Measurement* measurement) {
   Samples& samples = measurement->samples;
   const double cos_max = recipe.theta_max >= kPi / 2 - 1e-9 ? 0.0 : std::cos(recipe.theta_max + 1e-9);
   std::vector<std::uint8_t> keep(samples.size(), 1);
-  std::size_t beyond = 0, negative = 0;
+  const Aperture aperture = recipe.aperture();
+  const double least_i = aperture.source > 0 ? std::sin(aperture.source) : -1,
+               least_o = aperture.detector > 0 ? std::sin(aperture.detector) : -1;
+  std::size_t beyond = 0, negative = 0, at_horizon = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.wi_z[i] < cos_max || samples.wo_z[i] < cos_max) {
       keep[i] = 0;
       ++beyond;
+    } else if (samples.wi_z[i] <= least_i || samples.wo_z[i] <= least_o) {
+      keep[i] = 0;
+      ++at_horizon;
     }
   }
   const Transform transform = TransformOf(recipe.metric, recipe.noise);
@@ -40,15 +65,19 @@ void SetAsideForRecipe(const Recipe& recipe, Measurement* measurement) {
       ++negative;
     }
   }
-  if (beyond + negative == 0) return;
-  if (beyond + negative == samples.size()) {
+  if (beyond + negative + at_horizon == 0) return;
+  if (beyond + negative + at_horizon == samples.size()) {
     throw InputError(measurement->source + ": none of its " + std::to_string(samples.size()) +
                      " usable samples can be fitted: " + std::to_string(beyond) + " are beyond the angle limit, " +
+                     (at_horizon > 0
+                          ? std::to_string(at_horizon) + " have a disc of source or detector that reaches the horizon, "
+                          : std::string()) +
                      std::to_string(negative) +
                      " are negative where the metric needs positive values; use --theta-max or another --metric");
   }
   samples.Keep(keep);
   if (beyond > 0) measurement->set_aside.Add(SetAsideReason::kBeyondAngleLimit, beyond);
+  if (at_horizon > 0) measurement->set_aside.Add(SetAsideReason::kDiscAtHorizon, at_horizon);
   if (negative > 0) measurement->set_aside.Add(SetAsideReason::kNegative, negative);
 }
 
@@ -78,6 +107,11 @@ Problem::Problem(const Samples& samples, const Recipe& recipe)
   kernel_.sin_o = RowOf(recipe.metric).sin_o;
   if (!samples.weight.empty()) kernel_.weight = samples.weight.data();
   if (by_solid_angle) kernel_.solid_angle = samples.solid_angle.data();
+  if (recipe.instrument.alignment && recipe.instrument.alignment->azimuths.size() > 1) {
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      turn_.push_back(recipe.instrument.alignment->TurnOf(samples.sample_azimuth[i]));
+    kernel_.turn = turn_.data();
+  }
   if (!sigma_.empty()) {
     weight_ = sigma_.AtReadings();
     for (std::size_t i = 0; i < samples.weight.size(); ++i) weight_[i] *= samples.weight[i];
@@ -115,6 +149,29 @@ void Problem::Reweigh(const KernelModel& model, ThreadPool* pool) {
   ScaleToMeanOne();
 }
 
+void Problem::AttachGains(Gains* gains) {
+  gains_ = gains;
+  kernel_.gain_group = gains->groups();
+  kernel_.gain = gains->gains();
+}
+
+GainSums Problem::SumGains(const KernelModel& model, ThreadPool* pool) const {
+  const std::vector<double> zero(gains_->size(), 0.0);
+  std::vector<GainSums> partial(RunCount(size()), {zero, zero});
+  pool->Run(partial.size(), [&](std::size_t run) {
+    lobefit::SumGains(kernel_, model, RunBegin(size(), run), RunBegin(size(), run + 1), &partial[run]);
+  });
+  for (std::size_t run = 1; run < partial.size(); ++run) {
+    partial[0].sum_of_squares += partial[run].sum_of_squares;
+    partial[0].weighted_squares += partial[run].weighted_squares;
+    for (std::size_t k = 0; k < zero.size(); ++k) {
+      partial[0].curvature[k] += partial[run].curvature[k];
+      partial[0].slope[k] += partial[run].slope[k];
+    }
+  }
+  return partial[0];
+}
+
 KernelSums Problem::Sum(const KernelModel& model, bool gradient, ThreadPool* pool) const {
   const std::size_t runs = RunCount(size());
   std::vector<KernelSums> partial(runs);
@@ -122,6 +179,7 @@ KernelSums Problem::Sum(const KernelModel& model, bool gradient, ThreadPool* poo
     Accumulate(kernel_, model, gradient, RunBegin(size(), run), RunBegin(size(), run + 1), &partial[run]);
   });
   KernelSums total = std::move(partial[0]);
+  MergeArrows(partial, &total.arrows);
   for (std::size_t run = 1; run < runs; ++run) {
     total.sum_rho += partial[run].sum_rho;
     total.sum_robust_weight += partial[run].sum_robust_weight;
@@ -136,6 +194,7 @@ KernelSums Problem::Sum(const KernelModel& model, bool gradient, ThreadPool* poo
     total.prior_slope.push_back(square * model.prior[k] * model.coordinates[k]);
     total.sum_rho += total.prior_slope.back() * model.coordinates[k];
   }
+  if (gains_ != nullptr) total.sum_rho += gains_->PriorSum();
   return total;
 }
 

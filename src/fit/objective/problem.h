@@ -12,6 +12,8 @@
 
 namespace lobefit {
 
+class Gains;
+
 // Sets the samples aside that the recipe's metric cannot take: beyond the angle limit; values that the transform has no
 // number for (log: 1 + f cos_theta_i <= 0; relative: f <= 0). Throws InputError where none is left.
 void SetAsideForRecipe(const Recipe& recipe, Measurement* measurement);
@@ -39,6 +41,11 @@ class Problem {
   void Reweigh(const KernelModel& model, ThreadPool* pool);
   bool depends_on_model() const { return !sigma_.empty(); }
 
+  // Readings are multiplied by `gains` from now on, which must outlive this; their prior is part of the cost.
+  void AttachGains(Gains* gains);
+  Gains* gains() const { return gains_; }
+  GainSums SumGains(const KernelModel& model, ThreadPool* pool) const;
+
   // Sums over all samples. The samples are cut into a fixed number of runs whose sums are added in order, so that the
   // result does not depend on the number of threads, and memory does not depend on the number of samples.
   KernelSums Sum(const KernelModel& model, bool gradient, ThreadPool* pool) const;
@@ -50,7 +57,9 @@ class Problem {
   Metric metric_;
   KernelSamples kernel_;
   SigmaWeights sigma_;
-  std::vector<double> weight_;  // the samples' own times those of their uncertainties; empty where there are none
+  Gains* gains_ = nullptr;
+  std::vector<std::uint16_t> turn_;  // of each sample, where an alignment is fitted over several
+  std::vector<double> weight_;       // the samples' own times those of their uncertainties; empty where there are none
 };
 
 // Pointers to the samples' directions in the kernel's order.

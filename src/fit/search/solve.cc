@@ -12,9 +12,10 @@ Eigen::VectorXd ToVector(const std::vector<double>& u) {
 }  // namespace
 
 double Linearise(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool,
-                 Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) {
+                 Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient, std::vector<GainLink>* links) {
   const KernelSums sums = problem.Sum(layout.ToKernel(u), true, pool);
   layout.Gather(sums, hessian, gradient);
+  if (problem.gains() != nullptr) EliminateGains(sums, layout, *problem.gains(), hessian, gradient, links);
   return sums.sum_rho / 2;
 }
 
@@ -30,6 +31,7 @@ BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, Threa
   objective.residuals = problem.size() * problem.channels();
   objective.evaluate = [&problem, &layout, pool](const Eigen::VectorXd& u, Eigen::MatrixXd* gram,
                                                  Eigen::VectorXd* gradient) {
+    if (problem.gains() != nullptr) problem.gains()->Profile(problem, layout.ToKernel(u.data()), pool);
     if (gram != nullptr) return Linearise(problem, layout, u.data(), pool, gram, gradient);
     return problem.Sum(layout.ToKernel(u.data()), false, pool).sum_rho / 2;
   };
@@ -43,6 +45,7 @@ Solution Solve(const Problem& problem, const Layout& layout, const std::vector<d
   descent_options.function_tolerance = options.function_tolerance;
   descent_options.use_ceres = options.use_ceres;
   const Descent descent = Descend(ObjectiveOf(problem, layout, pool), ToVector(start), descent_options);
+  if (problem.gains() != nullptr) problem.gains()->Profile(problem, layout.ToKernel(descent.u.data()), pool);
   return {{descent.u.data(), descent.u.data() + descent.u.size()},
           descent.cost,
           descent.converged,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/objective/gains.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/descent.h"
 
@@ -25,14 +26,15 @@ struct Solution {
   std::string message;
 };
 
-// Descends from `start` (within the bounds) by Levenberg-Marquardt. A start whose cost is not finite comes back not
+// Descends from `start` (within the bounds) by Levenberg-Marquardt. Gains are left at those of the solution. A start whose cost is not finite comes back not
 // converged.
 Solution Solve(const Problem& problem, const Layout& layout, const std::vector<double>& start,
                const SolveOptions& options, ThreadPool* pool);
 
-// Gauss-Newton matrix and gradient of the cost at `u`, and the cost.
+// Gauss-Newton matrix and gradient of the cost at `u`, and the cost. With gains (Problem::gains), at those that it has:
+// of what the cost is where they follow the model (gains.h), with `links` unless null.
 double Linearise(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool,
-                 Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient);
+                 Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient, std::vector<GainLink>* links = nullptr);
 
 // The problem over the box of the layout's bounds; all arguments must outlive it.
 BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, ThreadPool* pool);

@@ -10,6 +10,7 @@
 #include "lobefit/io/csv/row_conditions.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
+#include "lobefit/math/vec.h"
 #include "lobefit/measurement/exclusion.h"
 
 namespace lobefit {
@@ -75,6 +76,17 @@ void SetOption(const InputFile& file, std::size_t line, std::string_view word, c
 std::optional<ValueKind> KindOf(std::string_view word) {
   if (const std::optional<ValueKind> kind = ParseValueKind(word)) return kind;
   return ClassifyColumn(word).value_kind;
+}
+
+// Of a source or detector as seen from the sample; as recipes allow.
+constexpr double kLargestHalfAngleDeg = 30;
+
+// "1.5 deg" without its unit.
+std::string_view NumberOfDegrees(std::string_view word) {
+  for (const std::string_view unit : {"degrees", "deg"}) {
+    if (word.ends_with(unit)) return Trim(word.substr(0, word.size() - unit.size()));
+  }
+  return word;
 }
 
 bool Is(const std::string& name, std::initializer_list<std::string_view> spellings) {
@@ -169,6 +181,11 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
       FailAtLine(file, line, "sample-rotation-deg is '" + Excerpt(word) + "'; a number of degrees is allowed");
     }
     keys->Fix({Coordinate::kSampleRotation, *degrees, AngleUnit::kDegrees});
+  } else if (name == "turned") {
+    // Half a turn on the stage, as an alignment is told from a tilt by.
+    if (word != "true" && word != "false" && word != "180")
+      FailAtLine(file, line, "turned is '" + Excerpt(word) + "'; allowed are true, false");
+    if (word != "false") keys->Fix({Coordinate::kSampleRotation, 180, AngleUnit::kDegrees});
   } else if (name == "columns") {
     // "Columns: incidence, azimuth, value" is prose.
     if (word.find('=') == std::string_view::npos) return false;
@@ -181,6 +198,17 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
         file, line, word, [](const std::string& words) { NoValues marks(words); }, &keys->no_value);
   } else if (name == "exclude") {
     SetOption(file, line, word, ParseExclusions, &keys->exclude);
+  } else if ((name == "source" || name == "detector") && ParseDouble(NumberOfDegrees(word))) {
+    // Without a number it is prose ("# source: xenon lamp").
+    const double degrees = *ParseDouble(NumberOfDegrees(word));
+    if (!(degrees >= 0 && degrees <= kLargestHalfAngleDeg)) {
+      FailAtLine(file, line,
+                 name + " is '" + Excerpt(word) + "'; the half angle of its disc is allowed, 0 to " +
+                     FormatDouble(kLargestHalfAngleDeg) + " degrees");
+    }
+    (name == "source" ? keys->instrument.source : keys->instrument.detector) = DegreesToRadians(degrees);
+  } else if (name == "mean" && (word == "flux" || word == "plain")) {
+    keys->instrument.plain_mean = word == "plain";
   } else if (name == "value-column") {
     keys->value_column = std::string(word);
   } else if (name == "repeated") {

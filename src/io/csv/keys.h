@@ -9,6 +9,7 @@
 
 #include "lobefit/io/csv/columns.h"
 #include "lobefit/io/text/format.h"
+#include "lobefit/measurement/measurement.h"
 
 namespace lobefit {
 
@@ -28,6 +29,7 @@ struct CsvKeys {
   std::optional<IncidentSense> incident_sense;
   std::optional<WavelengthUnit> wavelength_unit;
   std::optional<double> wavelength_nm;
+  StatedInstrument instrument;
   std::vector<FixedCoordinate> fixed;  // each coordinate at most once
   std::string columns, where, no_value, exclude, value_column, repeated;
   std::vector<std::string> remarks;  // keys that resemble a known one

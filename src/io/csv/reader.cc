@@ -73,6 +73,14 @@ class CsvReader {
   }
 
  private:
+  // A turn of the whole sample.
+  void StateTurn(Samples* samples) const {
+    const FixedCoordinate* turn = header_.keys.Find(Coordinate::kSampleRotation);
+    if (turn == nullptr || turn->number == 0) return;
+    samples->sample_azimuth.assign(samples->size(),
+                                   turn->number * RadiansPerUnit(turn->unit.value_or(AngleUnit::kDegrees)));
+  }
+
   Measurement Finish(MeasurementBuilder* builder) {
     if (!polarisations_.empty()) WithPath([&] { AveragePolarisations(&builder->measurement()); });
     Samples& rows = builder->measurement().samples;
@@ -101,6 +109,8 @@ class CsvReader {
     measurement.conventions["repeated"] = Name(repeated_) + (options_.repeated               ? " (option)"
                                                              : header_.keys.repeated.empty() ? " (default)"
                                                                                              : " (header)");
+    measurement.instrument = header_.keys.instrument;
+    StateTurn(&measurement.samples);
     if (!header_.keys.exclude.empty()) measurement.conventions["exclude"] = header_.keys.exclude;
     measurement.remarks = std::move(notes_.remarks);
     measurement.isotropic = layout_.directions.IsIsotropic();

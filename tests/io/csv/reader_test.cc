@@ -214,5 +214,30 @@ TEST(Csv, ANoiseFloorIsTheUncertaintyOfEveryReading) {
   EXPECT_EQ(m.conventions.at("noise-floor"), "0.01 (option)");
 }
 
+TEST(Csv, KeysStateTheInstrument) {
+  const std::string row = "theta_i,phi_i,theta_o,phi_o,Y\n10,0,20,0,1\n";
+  const Measurement stated = ReadText("# source: 2\n# detector = 1.5 deg\n# mean: plain\n" + row);
+  EXPECT_DOUBLE_EQ(*stated.instrument.source, DegreesToRadians(2));
+  EXPECT_DOUBLE_EQ(*stated.instrument.detector, DegreesToRadians(1.5));
+  EXPECT_TRUE(*stated.instrument.plain_mean);
+  // Prose that begins with the same words.
+  const Measurement prose = ReadText("# source: xenon lamp\n# detector: InGaAs\n# mean: of 3 scans\n" + row);
+  EXPECT_FALSE(prose.instrument.source || prose.instrument.detector || prose.instrument.plain_mean);
+  // Half a turn on the stage: directions are those of the sample, and the alignment learns of it.
+  const Measurement turned = ReadText("# turned: true\n" + row);
+  EXPECT_NEAR(turned.samples.wi_x[0], -std::sin(DegreesToRadians(10)), 1e-12);
+  EXPECT_DOUBLE_EQ(turned.samples.sample_azimuth.at(0), kPi);
+  EXPECT_TRUE(stated.samples.sample_azimuth.empty());
+  try {
+    ReadText("# detector: 95\n" + row);
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(
+        std::string(error.what()).find("detector is '95'; the half angle of its disc is allowed, 0 to 30 degrees"),
+        std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -1,0 +1,158 @@
+#include "lobefit/fit/instrument.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/fit/search/solve.h"
+
+namespace lobefit {
+namespace {
+
+// Width of the narrowest lobe across its narrowest axis in slope space.
+double NarrowestWidth(const KernelModel& kernel) {
+  double narrowest = HUGE_VAL;
+  for (const KernelLobe& lobe : kernel.lobes) {
+    const OffCenter o = OffCenterFromSlopeCoordinates(lobe.shape.slope);
+    const double mean = 0.5 * (o.q11 + o.q22), off = std::hypot(0.5 * (o.q11 - o.q22), o.q12);
+    // The smaller eigenvalue as det over the larger one: no cancellation.
+    narrowest = std::min(narrowest, std::exp(lobe.shape.slope.v[2] + lobe.shape.slope.v[4]) / std::sqrt(mean + off));
+  }
+  return narrowest;
+}
+
+// Azimuths of the sample on its stage, in the order in which they come.
+std::vector<double> AzimuthsOfTurns(const Measurement& measurement) {
+  // Those of one stage agree to less than this; the angle between turns is known no better than their prior.
+  constexpr double kSame = 0.5 * kPi / 180;
+  constexpr std::size_t kMostTurns = 24;
+  std::vector<double> azimuths;
+  for (const double azimuth : measurement.samples.sample_azimuth) {
+    const bool known = std::any_of(azimuths.begin(), azimuths.end(), [&](double other) {
+      return std::fabs(std::remainder(azimuth - other, 2 * kPi)) < kSame;
+    });
+    if (!known) azimuths.push_back(azimuth);
+  }
+  if (azimuths.size() > kMostTurns) {
+    throw InputError(fmt::format("{}: the sample has {} azimuths on its stage; an alignment is fitted over {} at most",
+                                 measurement.source, azimuths.size(), kMostTurns));
+  }
+  if (azimuths.empty()) azimuths.push_back(0);
+  return azimuths;
+}
+
+// What incidences must be for gains, alignment and offset to be more than another name of the model.
+void RequireIncidences(const Recipe& recipe, const Measurement& measurement, const Incidences& incidences) {
+  const InstrumentRecipe& instrument = recipe.instrument;
+  const auto refuse = [&](const std::string& why) { throw InputError(measurement.source + ": " + why); };
+  if ((instrument.drift || instrument.alignment) && measurement.isotropic) {
+    refuse(
+        "drift and alignment belong to a sample on a stage; this format is isotropic by construction, and has lost "
+        "them");
+  }
+  if (instrument.alignment && incidences.wi.size() < 2) {
+    refuse(
+        "an alignment cannot be told from one incident direction, whose lobe a crooked sample moves as a tilt does; "
+        "measure several, or leave the alignment out");
+  }
+  if (instrument.drift && incidences.wi.size() < 3) {
+    refuse(fmt::format("drift is what gains of the incidences scatter by, and there {} {}; three are needed",
+                       incidences.wi.size() == 1 ? "is" : "are", incidences.wi.size()));
+  }
+  if (!instrument.offset || recipe.model.diffuse == Diffuse::kNone) return;
+  bool free = false;
+  const std::vector<Parameter> parameters = Parameters(recipe.model);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    free = free || (parameters[i].group == ParameterGroup::kDiffuse && recipe.IsFree(i));
+  const auto [low, high] = std::minmax_element(incidences.wi.begin(), incidences.wi.end(),
+                                               [](const Vec3& a, const Vec3& b) { return a.z < b.z; });
+  // An offset b is an albedo of pi b / cos_theta_i.
+  constexpr double kLeastRatio = 0.9;
+  if (free && low->z > kLeastRatio * high->z) {
+    refuse(
+        "at incident directions of one polar angle an offset is exactly a diffuse part: fix the diffuse albedo, or "
+        "leave the offset out");
+  }
+}
+
+}  // namespace
+
+std::optional<double> DetectorStep(const Measurement& measurement, const Incidences& incidences) {
+  if (measurement.isotropic) return std::nullopt;
+  constexpr std::size_t kMostDirections = 500;
+  const Samples& samples = measurement.samples;
+  std::vector<std::vector<std::size_t>> groups(incidences.wi.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) groups[incidences.group[i]].push_back(i);
+  std::vector<double> distances;
+  const std::size_t step = std::max<std::size_t>(1, samples.size() / kMostDirections);
+  for (std::size_t i = 0; i < samples.size(); i += step) {
+    double nearest = HUGE_VAL;
+    for (const std::size_t j : groups[incidences.group[i]]) {
+      if (j != i) nearest = std::min(nearest, Norm(samples.wo(i) - samples.wo(j)));
+    }
+    if (nearest < HUGE_VAL) distances.push_back(2 * std::asin(std::min(1.0, 0.5 * nearest)));
+  }
+  if (distances.empty()) return std::nullopt;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+Recipe ThroughInstrument(const Recipe& recipe, const Measurement& measurement) {
+  Recipe through = recipe;
+  InstrumentRecipe& instrument = through.instrument;
+  const StatedInstrument& stated = measurement.instrument;
+  if (!instrument.source) instrument.source = stated.source;
+  if (!instrument.detector) instrument.detector = stated.detector;
+  if (!instrument.mean && stated.plain_mean)
+    instrument.mean = *stated.plain_mean ? ApertureMean::kPlain : ApertureMean::kFlux;
+  const Incidences incidences = GroupByIncidence(measurement);
+  RequireIncidences(through, measurement, incidences);
+  if (instrument.alignment) instrument.alignment->azimuths = AzimuthsOfTurns(measurement);
+  const Aperture aperture = through.aperture();
+  if (!aperture.any()) return through;
+  const std::optional<double> step = DetectorStep(measurement, incidences);
+  const double widest = std::max(aperture.source, aperture.detector);
+  if (step && widest > kMostSteps * *step) {
+    throw InputError(fmt::format(
+        "{}: a {} of half angle {:.3g} degrees is {:.0f} times the step between neighbouring directions, {:.3g} "
+        "degrees: "
+        "the samples would all be the same average; allowed are {:g} steps. Half angles are meant, in degrees",
+        measurement.source, aperture.source > aperture.detector ? "source" : "detector", RadiansToDegrees(widest),
+        widest / *step, RadiansToDegrees(*step), kMostSteps));
+  }
+  return through;
+}
+
+void RefineRules(const Problem& problem, const std::vector<std::string>& channels, Layout* layout,
+                 std::vector<DistinctMinimum>* minima, ThreadPool* pool) {
+  Recipe recipe = layout->recipe();
+  const Aperture aperture = recipe.aperture();
+  const double smaller = std::min(aperture.source, aperture.detector);
+  if (smaller == 0) return;
+  constexpr int kMostRounds = 3;
+  // Room for the lobe to become a little narrower still.
+  constexpr double kRoom = 0.8;
+  for (int round = 0; round < kMostRounds && !minima->empty(); ++round) {
+    const double made_for = recipe.instrument.finest_width > 0 ? recipe.instrument.finest_width : smaller;
+    const double width = NarrowestWidth(layout->ToKernel(minima->front().solution.u.data()));
+    if (width >= made_for) return;
+    recipe.instrument.finest_width = kRoom * width;
+    *layout = Layout(recipe, channels);
+    for (DistinctMinimum& minimum : *minima) {
+      const int before = minimum.solution.iterations;
+      minimum.solution = Solve(problem, *layout, minimum.solution.u, {}, pool);
+      minimum.solution.iterations += before;
+      minimum.samples = problem.size();
+      minimum.on_all_samples = true;
+    }
+    std::stable_sort(minima->begin(), minima->end(), [](const DistinctMinimum& a, const DistinctMinimum& b) {
+      return a.solution.cost < b.solution.cost;
+    });
+  }
+}
+
+}  // namespace lobefit
