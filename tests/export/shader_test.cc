@@ -163,6 +163,34 @@ SyntheticCase SpectralProfile() {
 // What a text is asked in each pixel.
 constexpr const char* kCall = "vec3 pixel(vec4 a, vec4 b) { return f_of(a.xyz, b.xyz); }\n";
 
+// The same call for glsl of any channels.
+std::string MainOf(const FittedBrdf& fit) {
+  const std::size_t channels = fit.material().channels.size();
+  return fit.IsRgbOrGrey() ? "vec3 f_of(vec3 wi, vec3 wo) { return lobefit_f_r(wi, wo); }\n"
+                           : fmt::format(
+                                 "vec3 f_of(vec3 wi, vec3 wo) {{ float f[{}]; lobefit_f_r(wi, wo, f); return "
+                                 "vec3(f[0], f[1], f[{}]); }}\n",
+                                 channels, channels - 1);
+}
+
+const ShaderCase kShaderCases[] = {{"tilted", test::Tilted},
+                                   {"two_lobes", test::TwoLobes},
+                                   {"spectral", Spectral},
+                                   {"narrow", Narrow},
+                                   {"beckmann_metal", BeckmannMetal},
+                                   {"beckmann_glass", BeckmannGlass},
+                                   {"beckmann_kelemen", BeckmannKelemen},
+                                   {"schlick_smith", GgxSchlickSmith},
+                                   {"implicit", GgxImplicit},
+                                   {"tilted_profile", TiltedProfile},
+                                   {"steep_profile", SteepProfile},
+                                   {"narrow_profile", NarrowProfile},
+                                   {"student_over_glass", StudentOverGlass},
+                                   {"light_student", LightStudent},
+                                   {"student_schlick_smith", StudentSchlickSmith},
+                                   {"retro", Retro},
+                                   {"spectral_profile", SpectralProfile}};
+
 class Shaders : public testing::TestWithParam<ShaderCase> {
  protected:
   void SetUp() override {
@@ -176,22 +204,13 @@ class Shaders : public testing::TestWithParam<ShaderCase> {
 
   std::string Validate(const std::string& text) const { return test::Validate(text, folder_); }
 
-  std::string Main() const {
-    const std::size_t channels = fit_->material().channels.size();
-    return fit_->IsRgbOrGrey() ? "vec3 f_of(vec3 wi, vec3 wo) { return lobefit_f_r(wi, wo); }\n"
-                               : fmt::format(
-                                     "vec3 f_of(vec3 wi, vec3 wo) {{ float f[{}]; lobefit_f_r(wi, wo, f); return "
-                                     "vec3(f[0], f[1], f[{}]); }}\n",
-                                     channels, channels - 1);
-  }
-
   std::filesystem::path folder_;
   std::unique_ptr<FittedBrdf> fit_;
 };
 
 TEST_P(Shaders, CompileForGlAndForWebGl) {
   if (!test::Installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
-  const std::string text = GlslText(*fit_, "a 2nd--one", {"a comment"}) + Main();
+  const std::string text = GlslText(*fit_, "a 2nd--one", {"a comment"}) + MainOf(*fit_);
   const std::string main = "in vec3 a; in vec3 b; out vec4 c;\nvoid main() { c = vec4(f_of(a, b), 1.0); }\n";
   for (const char* version : {"#version 300 es\nprecision highp float;\n", "#version 330\n", "#version 410\n"}) {
     EXPECT_THAT(Validate(version + text + main), testing::Not(HasSubstr("ERROR"))) << version;
@@ -230,24 +249,12 @@ TEST_P(Shaders, BrdfExplorerFileCompiles) {
               testing::Not(HasSubstr("ERROR")));
 }
 
-// 64 pairs of directions, for each text one pixel a pair in floating point.
-TEST_P(Shaders, GiveTheFitsValuesInABrowser) {
-  if (!test::Installed("chromium")) GTEST_SKIP() << "Chromium is not installed";
-  constexpr int kPairs = 64;
-  std::vector<Vec3> wi, wo;
-  ShapeGenerator directions(11);
-  while (wi.size() < kPairs) {
-    const Vec3 i = directions.Upper(), o = wi.size() % 4 == 0 ? Vec3{-i.x, -i.y, i.z} : directions.Upper();
-    if (i.z < 0.02 || o.z < 0.02) continue;
-    wi.push_back(i);
-    wo.push_back(o);
-  }
-  std::vector<std::array<test::Texel, 2>> pairs;
-  for (std::size_t k = 0; k < kPairs; ++k) pairs.push_back({test::Texel{wi[k], 0}, test::Texel{wo[k], 0}});
+// The glsl of a fit and, where that holds it, BRDF Explorer's.
+std::vector<std::string> BrowserTexts(const FittedBrdf& fit) {
   std::string explorer_body, explorer_uniforms;
-  if (fit_->IsRgbOrGrey()) {
+  if (fit.IsRgbOrGrey()) {
     // The sliders at their defaults, as constants.
-    const std::string text = BrdfExplorerText(*fit_, {});
+    const std::string text = BrdfExplorerText(fit, {});
     LineReader again(text);
     std::string_view line;
     bool in_parameters = false, in_shader = false;
@@ -267,40 +274,61 @@ TEST_P(Shaders, GiveTheFitsValuesInABrowser) {
         "vec3 f_of(vec3 wi, vec3 wo) { return BRDF(wi, wo, vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, "
         "0.0)); }\n";
   }
-  std::vector<std::string> texts = {GlslText(*fit_, "one", {}) + Main() + kCall};
+  std::vector<std::string> texts = {GlslText(fit, "one", {}) + MainOf(fit) + kCall};
   if (!explorer_body.empty()) texts.push_back(explorer_uniforms + explorer_body + kCall);
-  const std::vector<std::vector<double>> rows = test::EvaluateInBrowser(texts, pairs, folder_);
+  return texts;
+}
+
+// 64 pairs of directions, for each text one pixel a pair in floating point. One page for all materials: the browser
+// takes seconds to start.
+TEST(ShadersInABrowser, GiveTheFitsValues) {
+  if (!test::Installed("chromium")) GTEST_SKIP() << "Chromium is not installed";
+  constexpr int kPairs = 64;
+  std::vector<Vec3> wi, wo;
+  ShapeGenerator directions(11);
+  while (wi.size() < kPairs) {
+    const Vec3 i = directions.Upper(), o = wi.size() % 4 == 0 ? Vec3{-i.x, -i.y, i.z} : directions.Upper();
+    if (i.z < 0.02 || o.z < 0.02) continue;
+    wi.push_back(i);
+    wo.push_back(o);
+  }
+  std::vector<std::array<test::Texel, 2>> pairs;
+  for (std::size_t k = 0; k < kPairs; ++k) pairs.push_back({test::Texel{wi[k], 0}, test::Texel{wo[k], 0}});
+  std::vector<std::string> texts;
+  std::vector<const ShaderCase*> cases;  // of each text
+  for (const ShaderCase& shader : kShaderCases) {
+    for (std::string& text : BrowserTexts(FittedBrdf(test::MaterialOf(shader.material())))) {
+      texts.push_back(std::move(text));
+      cases.push_back(&shader);
+    }
+  }
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "shaders_in_a_browser";
+  std::filesystem::create_directories(folder);
+  const std::vector<std::vector<double>> rows = test::EvaluateInBrowser(texts, pairs, folder);
+  std::filesystem::remove_all(folder);
   ASSERT_EQ(rows.size(), texts.size());
-  const std::size_t channels = fit_->material().channels.size();
   for (std::size_t text = 0; text < texts.size(); ++text) {
+    const FittedBrdf fit(test::MaterialOf(cases[text]->material()));
+    const std::size_t channels = fit.material().channels.size();
     const std::vector<double>& values = rows[text];
     ASSERT_EQ(values.size(), 4U * kPairs);
     for (std::size_t k = 0; k < kPairs; ++k) {
       std::vector<double> wanted(channels);
-      fit_->function()(wi[k], wo[k], wanted.data());
+      fit.function()(wi[k], wo[k], wanted.data());
       for (std::size_t c = 0; c < 3; ++c) {
         const double expected = wanted[channels == 1 ? 0 : c == 2 ? channels - 1 : c];
         const double found = values[4 * k + c];
         // Single precision: a direction has 6e-8, which a lobe of width alpha sees 1/alpha times as large.
-        const double tolerance = 1e-4 + 1e-6 / fit_->lobes()[0].widths.alpha_2;
-        EXPECT_NEAR(found / expected, 1, tolerance) << "text " << text << ", pair " << k << ", channel " << c;
+        const double tolerance = 1e-4 + 1e-6 / fit.lobes()[0].widths.alpha_2;
+        EXPECT_NEAR(found / expected, 1, tolerance)
+            << cases[text]->name << ", text " << text << ", pair " << k << ", channel " << c;
       }
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Materials, Shaders,
-    testing::Values(ShaderCase{"tilted", test::Tilted}, ShaderCase{"two_lobes", test::TwoLobes},
-                    ShaderCase{"spectral", Spectral}, ShaderCase{"narrow", Narrow},
-                    ShaderCase{"beckmann_metal", BeckmannMetal}, ShaderCase{"beckmann_glass", BeckmannGlass},
-                    ShaderCase{"beckmann_kelemen", BeckmannKelemen}, ShaderCase{"schlick_smith", GgxSchlickSmith},
-                    ShaderCase{"implicit", GgxImplicit}, ShaderCase{"tilted_profile", TiltedProfile},
-                    ShaderCase{"steep_profile", SteepProfile}, ShaderCase{"narrow_profile", NarrowProfile},
-                    ShaderCase{"student_over_glass", StudentOverGlass}, ShaderCase{"light_student", LightStudent},
-                    ShaderCase{"student_schlick_smith", StudentSchlickSmith}, ShaderCase{"retro", Retro},
-                    ShaderCase{"spectral_profile", SpectralProfile}),
-    [](const auto& parameter) { return std::string(parameter.param.name); });
+INSTANTIATE_TEST_SUITE_P(Materials, Shaders, testing::ValuesIn(kShaderCases),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
 
 // Two materials in one shader, and the first by the short name.
 TEST(GlslText, TwoFilesMakeOneShader) {

@@ -115,7 +115,10 @@ TEST(ApertureFit, RecoversLobesNarrowerThanTheDisc) {
 TEST(ApertureFit, BothDiscs) {
   const SyntheticCase truth = OneLobe(Ndf::kEllipsoid, 0.05, 0.02, 0.5, -0.5, 20, {0.7}, {0.02});
   const Aperture aperture = Discs(1, 1.5);
-  Measurement clean = Seen(truth, Fine(), aperture, 0, 1), noisy = Seen(truth, Fine(), aperture, 0.05, 1);
+  GoniometerLayout layout = Fine();
+  layout.azimuths.resize(2);
+  layout.detector_step = DegreesToRadians(6);
+  Measurement clean = Seen(truth, layout, aperture, 0, 1), noisy = Seen(truth, layout, aperture, 0.05, 1);
   const Material exact = Fit(RecipeOf(truth, aperture), {}, &clean), found = Fit(RecipeOf(truth, aperture), {}, &noisy);
   EXPECT_LT(std::fabs(Alpha(exact) - 0.02), 0.2 * found.parameters[1].standard_error[0]);
   EXPECT_LT(std::fabs(Alpha(found) - 0.02), 4 * found.parameters[1].standard_error[0]);
