@@ -135,10 +135,10 @@ double SurfaceFresnel::operator()(std::size_t channel, double cos_d) const {
   }
   const double rest = std::max(0.0, 1 - cos_d), schlick = f0[channel] + (f90[channel] - f0[channel]) * Power5(rest);
   if (f82.empty()) return schlick;
-  constexpr double kEdge = 1.0 / 7;
-  const double at_edge = f0[channel] + (f90[channel] - f0[channel]) * Power5(1 - kEdge);
+  constexpr double kCos82 = 1.0 / 7;
+  const double at_edge = f0[channel] + (f90[channel] - f0[channel]) * Power5(1 - kCos82);
   return schlick -
-         (1 - f82[channel]) * at_edge / (kEdge * Power5(1 - kEdge) * (1 - kEdge)) * cos_d * Power5(rest) * rest;
+         (1 - f82[channel]) * at_edge / (kCos82 * Power5(1 - kCos82) * (1 - kCos82)) * cos_d * Power5(rest) * rest;
 }
 
 BrdfFunction SurfaceBrdf(const Surface& surface) {
