@@ -1,6 +1,5 @@
 #include "fit_file.h"
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -9,7 +8,6 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
-#include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
 #include "lobefit/fit/instrument.h"
 #include "lobefit/fit/ladder.h"
@@ -63,14 +61,14 @@ FittedFile FitFile(const FitFileOptions& options, const std::vector<std::string>
   }
   std::vector<TriedModel> tried;
   if (options.recipe.IsAutomatic()) {
-    Progress progress("models", kMostTried);
-    FitOptions judged = fit;
-    judged.on_tried = [&progress] { progress.Advance(); };
     const Recipe through = ThroughInstrument(recipe, fitted.measurement);
-    LadderChoice choice = ClimbLadder(WithoutLastDescent(through), judged, &fitted.measurement);
+    LadderChoice choice = ClimbLadder(WithoutLastDescent(through), fit, &fitted.measurement);
     recipe = std::move(choice.recipe);
-    if (choice.warm) fit.scouting_steps = kScoutingSteps;
-    if (choice.warm) fit.starts = std::min<std::size_t>(fit.starts, 2);
+    // A number of descents that the user asked for is kept.
+    if (choice.warm && fit.starts == FitOptions().starts) {
+      fit.scouting_steps = kScoutingSteps;
+      fit.starts = kWarmStarts;
+    }
     recipe.instrument = through.instrument;
     tried = std::move(choice.tried);
   }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "fit_file.h"
 #include "report_formats.h"
@@ -13,6 +14,8 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/base/progress.h"
+#include "lobefit/fit/ladder.h"
 #include "lobefit/io/series.h"
 #include "lobefit/material/json.h"
 #include "lobefit/report/report.h"
@@ -43,7 +46,11 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   CheckOutput(document, inputs);
   if (!verb.no_report) CheckReports(formats, picture, inputs);
 
-  FittedFile fitted = FitFile(verb.options, verb.files, common.Threads(), common.command);
+  FitFileOptions options = verb.options;
+  std::optional<Progress> progress(std::in_place, "models", kMostTried);
+  options.fit.on_tried = [&progress] { progress->Advance(); };
+  FittedFile fitted = FitFile(options, verb.files, common.Threads(), common.command);
+  progress.reset();
   Material& material = fitted.material;
 
   // The document first: it is kept even where drawing fails.

@@ -25,6 +25,8 @@ struct LadderChoice {
 inline constexpr std::size_t kMostTried = 13;
 // After so many steps of descents from many starts the best of them are mostly known (FitOptions::scouting_steps).
 inline constexpr int kScoutingSteps = 15;
+// Descents (FitOptions::starts) of a model whose starts are those of its search.
+inline constexpr std::size_t kWarmStarts = 2;
 
 // `simplest`: the recipe that the measurement's traits allow (AutomaticRecipe), which gives metric, weighting and
 // limits, and is chosen where nothing can be held out. Sets samples aside that the recipe cannot take, as Fit does.
