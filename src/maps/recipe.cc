@@ -5,13 +5,11 @@
 
 #include <fmt/format.h>
 
-#define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
-
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
+#include "lobefit/base/toml_file.h"
 
 namespace lobefit {
 namespace {
@@ -20,11 +18,7 @@ const std::vector<std::string> kKeys = {"name", "model",  "normal",      "lobe",
                                         "loss", "shadow", "share_alpha", "least_alpha"};
 const std::vector<std::string> kModels = {"lambert", "ggx", "ggx-anisotropic"};
 
-struct RecipeFile {
-  std::string name;
-  [[noreturn]] void Fail(const toml::source_region& at, const std::string& message) const {
-    throw InputError(fmt::format("{}:{}: {}", name, at.begin.line, message));
-  }
+struct RecipeFile : TomlFile {
   // Index of the word in `allowed`; 0 where the key is not there.
   std::size_t Word(const toml::table& table, const char* key, const std::vector<std::string>& allowed) const {
     const toml::node* node = table.get(key);
@@ -37,35 +31,15 @@ struct RecipeFile {
     }
     return static_cast<std::size_t>(found - allowed.begin());
   }
-  double Number(const toml::table& table, const char* key, double otherwise, double low, double high) const {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return otherwise;
-    const double value = node->is_number() ? *node->value<double>() : kNan;
-    if (!(value >= low && value <= high)) {
-      Fail(node->source(), fmt::format("'{}' must be a number from {} to {}", key, low, high));
-    }
-    return value;
-  }
 };
 
 }  // namespace
 
 MapRecipe ReadMapRecipe(const std::filesystem::path& path) {
-  const RecipeFile file = {PrintableName(path)};
+  const RecipeFile file = {{PrintableName(path)}};
   const FileBytes bytes(path);
-  toml::table table;
-  try {
-    table = toml::parse(bytes.bytes());
-  } catch (const toml::parse_error& error) {
-    file.Fail(error.source(), Excerpt(error.description(), 200));
-  }
-  for (const auto& [key, node] : table) {
-    const std::string given(key.str());
-    if (std::find(kKeys.begin(), kKeys.end(), given) == kKeys.end()) {
-      file.Fail(key.source(),
-                fmt::format("unknown key '{}'{}; allowed: {}", Excerpt(given), DidYouMean(given, kKeys), Join(kKeys)));
-    }
-  }
+  const toml::table table = file.Parse(bytes.bytes());
+  file.CheckKeys(table, kKeys);
   MapRecipe recipe;
   recipe.name = path.stem().string();
   MapRules& rules = recipe.rules;

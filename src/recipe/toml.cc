@@ -4,12 +4,10 @@
 
 #include <fmt/format.h>
 
-#define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
-
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/base/toml_file.h"
 #include "lobefit/core/fresnel/optical_constants.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/recipe/recipe.h"
@@ -17,29 +15,7 @@
 namespace lobefit {
 namespace {
 
-// Where a value stands, for messages.
-struct Place {
-  std::string file;
-
-  [[noreturn]] void Fail(const toml::source_region& at, const std::string& message) const {
-    throw InputError(fmt::format("{}:{}: {}", file, at.begin.line, message));
-  }
-};
-
-void CheckKeys(const toml::table& table, const std::vector<std::string>& allowed, const std::string& where,
-               const Place& place) {
-  for (const auto& [key, node] : table) {
-    const std::string name(key.str());
-    bool known = false;
-    for (const std::string& candidate : allowed) known = known || candidate == name;
-    if (!known) {
-      place.Fail(key.source(), fmt::format("unknown key '{}' {}{}; allowed: {}", name, where, DidYouMean(name, allowed),
-                                           Join(allowed)));
-    }
-  }
-}
-
-std::optional<double> Number(const toml::table& table, const char* key, const Place& place) {
+std::optional<double> Number(const toml::table& table, const char* key, const TomlFile& place) {
   const toml::node* node = table.get(key);
   if (node == nullptr) return std::nullopt;
   const std::optional<double> value = node->value<double>();
@@ -50,8 +26,8 @@ std::optional<double> Number(const toml::table& table, const char* key, const Pl
 }
 
 template <class Enum>
-void ReadChoice(const toml::table& table, const char* key, const std::vector<Choice<Enum>>& choices, const Place& place,
-                Enum* value) {
+void ReadChoice(const toml::table& table, const char* key, const std::vector<Choice<Enum>>& choices,
+                const TomlFile& place, Enum* value) {
   const toml::node* node = table.get(key);
   if (node == nullptr) return;
   const std::optional<std::string> text = node->value<std::string>();
@@ -64,7 +40,7 @@ void ReadChoice(const toml::table& table, const char* key, const std::vector<Cho
   *value = choice->value;
 }
 
-const toml::table* Table(const toml::table& table, const char* key, const Place& place) {
+const toml::table* Table(const toml::table& table, const char* key, const TomlFile& place) {
   const toml::node* node = table.get(key);
   if (node == nullptr) return nullptr;
   if (!node->is_table()) place.Fail(node->source(), fmt::format("'{}' must be a table", key));
@@ -73,7 +49,7 @@ const toml::table* Table(const toml::table& table, const char* key, const Place&
 
 // A number or, where `per_channel`, a list of numbers; times `factor`.
 std::vector<double> Numbers(const toml::table& table, const char* key, bool per_channel, double factor,
-                            const Place& place) {
+                            const TomlFile& place) {
   std::vector<double> numbers;
   const toml::node* node = table.get(key);
   if (node == nullptr) return numbers;
@@ -92,14 +68,14 @@ std::vector<double> Numbers(const toml::table& table, const char* key, bool per_
 }
 
 // One parameter: { start, fixed, bounds = [low, high], shared }.
-ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter, const Place& place) {
+ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter, const TomlFile& place) {
   const std::string& name = parameter.json_name;
   if (!node.is_table()) {
     place.Fail(node.source(),
                fmt::format("'{}' must be a table such as {{ start = 0.2 }}; keys: start, fixed, bounds, shared", name));
   }
   const toml::table& table = *node.as_table();
-  CheckKeys(table, {"start", "fixed", "bounds", "shared"}, "of parameter '" + name + "'", place);
+  place.CheckKeys(table, {"start", "fixed", "bounds", "shared"}, "of parameter '" + name + "'");
   const double factor = InsideFactor(parameter);
   ParameterRecipe recipe;
   recipe.shared = parameter.shared;
@@ -146,8 +122,8 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
   return recipe;
 }
 
-Lobe ReadLobe(const toml::table& table, const Place& place) {
-  CheckKeys(table, {"ndf", "masking", "fresnel", "metal", "direction", "knots"}, "of a lobe", place);
+Lobe ReadLobe(const toml::table& table, const TomlFile& place) {
+  place.CheckKeys(table, {"ndf", "masking", "fresnel", "metal", "direction", "knots"}, "of a lobe");
   Lobe lobe;
   ReadChoice(table, "ndf", NdfChoices(), place, &lobe.ndf);
   ReadChoice(table, "masking", MaskingChoices(), place, &lobe.masking);
@@ -175,10 +151,10 @@ Lobe ReadLobe(const toml::table& table, const Place& place) {
   return lobe;
 }
 
-void ReadLoss(const toml::table& root, const Place& place, Recipe* recipe) {
+void ReadLoss(const toml::table& root, const TomlFile& place, Recipe* recipe) {
   const toml::table* loss = Table(root, "loss", place);
   if (loss == nullptr) return;
-  CheckKeys(*loss, {"kind", "scale"}, "of the loss", place);
+  place.CheckKeys(*loss, {"kind", "scale"}, "of the loss");
   ReadChoice(*loss, "kind", LossChoices(), place, &recipe->loss);
   if (const std::optional<double> scale = Number(*loss, "scale", place)) {
     if (*scale <= 0) place.Fail(loss->source(), "the scale of the loss must be above 0");
@@ -187,7 +163,7 @@ void ReadLoss(const toml::table& root, const Place& place, Recipe* recipe) {
 }
 
 // The half angle of a disc, in degrees.
-std::optional<double> HalfAngle(const toml::table& table, const char* key, const Place& place) {
+std::optional<double> HalfAngle(const toml::table& table, const char* key, const TomlFile& place) {
   const std::optional<double> degrees = Number(table, key, place);
   if (!degrees) return std::nullopt;
   const double highest = RadiansToDegrees(kLargestHalfAngle);
@@ -199,10 +175,10 @@ std::optional<double> HalfAngle(const toml::table& table, const char* key, const
   return DegreesToRadians(*degrees);
 }
 
-void ReadInstrument(const toml::table& root, const Place& place, Recipe* recipe) {
+void ReadInstrument(const toml::table& root, const TomlFile& place, Recipe* recipe) {
   const toml::table* table = Table(root, "instrument", place);
   if (table == nullptr) return;
-  CheckKeys(*table, {"source", "detector", "mean", "noise", "drift", "alignment", "offset"}, "of [instrument]", place);
+  place.CheckKeys(*table, {"source", "detector", "mean", "noise", "drift", "alignment", "offset"}, "of [instrument]");
   recipe->instrument.source = HalfAngle(*table, "source", place);
   recipe->instrument.detector = HalfAngle(*table, "detector", place);
   if (table->contains("mean")) {
@@ -210,7 +186,7 @@ void ReadInstrument(const toml::table& root, const Place& place, Recipe* recipe)
     ReadChoice(*table, "mean", ApertureMeanChoices(), place, &*recipe->instrument.mean);
   }
   if (const toml::table* noise = Table(*table, "noise", place)) {
-    CheckKeys(*noise, {"floor", "relative"}, "of the noise", place);
+    place.CheckKeys(*noise, {"floor", "relative"}, "of the noise");
     const std::optional<double> floor = Number(*noise, "floor", place), relative = Number(*noise, "relative", place);
     if (!floor || !relative || !(*floor > 0) || !(*relative > 0 && *relative <= 1)) {
       place.Fail(noise->source(),
@@ -226,7 +202,7 @@ void ReadInstrument(const toml::table& root, const Place& place, Recipe* recipe)
     recipe->instrument.drift = drift->is_string() ? DriftRecipe{} : DriftRecipe{*sd};
   }
   if (const toml::table* alignment = Table(*table, "alignment", place)) {
-    CheckKeys(*alignment, {"prior_deg"}, "of the alignment", place);
+    place.CheckKeys(*alignment, {"prior_deg"}, "of the alignment");
     const double prior = Number(*alignment, "prior_deg", place).value_or(RadiansToDegrees(AlignmentRecipe().prior));
     if (!(prior > 0 && prior <= kMostAlignmentDeg)) {
       place.Fail(alignment->source(),
@@ -265,10 +241,10 @@ std::string InstrumentToToml(const Recipe& recipe) {
 }
 
 // A recipe of a table of lobes: what belongs to a model has no place in it.
-Recipe ReadSelRecipe(const toml::table& root, const Place& place) {
+Recipe ReadSelRecipe(const toml::table& root, const TomlFile& place) {
   const toml::table& table = *Table(root, "sel", place);
-  CheckKeys(root, {"name", "metric", "weighting", "theta_max_deg", "sel"}, "of a recipe with [sel]", place);
-  CheckKeys(table, {"lobes", "quantity", "bound", "drift"}, "of [sel]", place);
+  place.CheckKeys(root, {"name", "metric", "weighting", "theta_max_deg", "sel"}, "of a recipe with [sel]");
+  place.CheckKeys(table, {"lobes", "quantity", "bound", "drift"}, "of [sel]");
   SelRecipe sel;
   if (const std::optional<double> lobes = Number(table, "lobes", place)) {
     if (*lobes != 1 && *lobes != 2 && *lobes != 3)
@@ -289,17 +265,17 @@ Recipe ReadSelRecipe(const toml::table& root, const Place& place) {
   }
   Model model;
   model.diffuse = Diffuse::kNone;
-  Recipe recipe = DefaultRecipe(model, std::filesystem::path(place.file).stem().string());
+  Recipe recipe = DefaultRecipe(model, std::filesystem::path(place.name).stem().string());
   recipe.sel = sel;
   return recipe;
 }
 
 // The part of a recipe that names a model.
-Recipe ReadModelRecipe(const toml::table& root, const Place& place) {
-  CheckKeys(root,
-            {"name", "metric", "weighting", "loss", "theta_max_deg", "wavelengths_nm", "diffuse", "instrument", "lobe",
-             "parameters", "sel"},
-            "of a recipe", place);
+Recipe ReadModelRecipe(const toml::table& root, const TomlFile& place) {
+  place.CheckKeys(root,
+                  {"name", "metric", "weighting", "loss", "theta_max_deg", "wavelengths_nm", "diffuse", "instrument",
+                   "lobe", "parameters", "sel"},
+                  "of a recipe");
   Model model;
   if (const toml::node* lobes = root.get("lobe")) {
     const toml::array* array = lobes->as_array();
@@ -311,19 +287,14 @@ Recipe ReadModelRecipe(const toml::table& root, const Place& place) {
   if (model.lobes.empty()) place.Fail(root.source(), "a recipe needs at least one [[lobe]], or [sel]");
   ReadChoice(root, "diffuse", DiffuseChoices(), place, &model.diffuse);
   if (const std::string why = WhyNotEvaluable(model); !why.empty()) place.Fail(root.get("lobe")->source(), why);
-  return DefaultRecipe(model, std::filesystem::path(place.file).stem().string());
+  return DefaultRecipe(model, std::filesystem::path(place.name).stem().string());
 }
 
 }  // namespace
 
 Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
-  const Place place{file_name};
-  toml::table root;
-  try {
-    root = toml::parse(toml_text, file_name);
-  } catch (const toml::parse_error& error) {
-    place.Fail(error.source(), std::string(error.description()));
-  }
+  const TomlFile place{file_name};
+  const toml::table root = place.Parse(toml_text);
   Recipe recipe = root.contains("sel") ? ReadSelRecipe(root, place) : ReadModelRecipe(root, place);
   if (const toml::node* name = root.get("name")) {
     if (!name->is_string()) place.Fail(name->source(), "'name' must be a string");
@@ -344,7 +315,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
     const std::vector<Parameter> parameters = Parameters(recipe.model);
     std::vector<std::string> names;
     for (const Parameter& parameter : parameters) names.push_back(parameter.json_name);
-    CheckKeys(*table, names, "of this model's parameters", place);
+    place.CheckKeys(*table, names, "of this model's parameters");
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       if (const toml::node* node = table->get(names[i]))
         recipe.parameters[i] = ReadParameter(*node, parameters[i], place);

@@ -4,48 +4,24 @@
 
 #include <fmt/format.h>
 
-#define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
-
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
+#include "lobefit/base/toml_file.h"
 #include "lobefit/maps/stack/layouts.h"
 
 namespace lobefit {
 namespace {
 
-struct Manifest {
-  std::string name;
+struct Manifest : TomlFile {
   std::filesystem::path folder;
 
-  [[noreturn]] void Fail(const toml::source_region& at, const std::string& message) const {
-    throw InputError(fmt::format("{}:{}: {}", name, at.begin.line, message));
-  }
-  void CheckKeys(const toml::table& table, const std::vector<std::string>& allowed) const {
-    for (const auto& [key, node] : table) {
-      const std::string given(key.str());
-      if (std::find(allowed.begin(), allowed.end(), given) == allowed.end()) {
-        Fail(key.source(),
-             fmt::format("unknown key '{}'{}; allowed: {}", Excerpt(given), DidYouMean(given, allowed), Join(allowed)));
-      }
-    }
-  }
   std::string Text(const toml::table& table, const char* key) const {
     const toml::node* node = table.get(key);
     if (node == nullptr) return "";
     if (!node->is_string()) Fail(node->source(), fmt::format("'{}' must be a text", key));
     return *node->value<std::string>();
-  }
-  double Number(const toml::table& table, const char* key, double otherwise, double low, double high) const {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return otherwise;
-    const double value = node->is_number() ? *node->value<double>() : kNan;
-    if (!(value >= low && value <= high)) {
-      Fail(node->source(), fmt::format("'{}' must be a number from {} to {}", key, low, high));
-    }
-    return value;
   }
   // The files of a pattern with one star in its last part, sorted by name.
   std::vector<std::filesystem::path> Matching(const std::string& pattern) const {
@@ -125,14 +101,9 @@ void ReadLights(const Manifest& manifest, const toml::table& table, Stack* stack
 }  // namespace
 
 StackFiles ReadManifest(const std::filesystem::path& file) {
-  const Manifest manifest = {PrintableName(file), file.parent_path()};
+  const Manifest manifest = {{PrintableName(file)}, file.parent_path()};
   const FileBytes bytes(file);
-  toml::table table;
-  try {
-    table = toml::parse(bytes.bytes());
-  } catch (const toml::parse_error& error) {
-    manifest.Fail(error.source(), Excerpt(error.description(), 200));
-  }
+  const toml::table table = manifest.Parse(bytes.bytes());
   manifest.CheckKeys(table, {"images", "mask", "encoding", "saturation", "black", "calibrated", "lights"});
   StackFiles files;
   Stack& stack = files.stack;

@@ -1,0 +1,59 @@
+// What every reader of TOML says of a file: where a fault stands, what is unknown, what is allowed. For sources that
+// link toml++; an alternative to its own exceptions, which know no file.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#define TOML_EXCEPTIONS 1
+#include <toml++/toml.h>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+
+namespace lobefit {
+
+struct TomlFile {
+  std::string name;  // printable
+
+  [[noreturn]] void Fail(const toml::source_region& at, const std::string& message) const {
+    throw InputError(fmt::format("{}:{}: {}", name, at.begin.line, message));
+  }
+
+  // Throws InputError with the line for text that is not TOML.
+  toml::table Parse(std::string_view text) const {
+    try {
+      return toml::parse(text);
+    } catch (const toml::parse_error& error) {
+      Fail(error.source(), Excerpt(error.description(), 200));
+    }
+  }
+
+  // `where`: of which table, in words such as "in [lights]"; may be empty.
+  void CheckKeys(const toml::table& table, const std::vector<std::string>& allowed,
+                 const std::string& where = "") const {
+    for (const auto& [key, node] : table) {
+      const std::string given(key.str());
+      if (std::find(allowed.begin(), allowed.end(), given) != allowed.end()) continue;
+      Fail(key.source(), fmt::format("unknown key '{}'{}{}{}; allowed: {}", Excerpt(given), where.empty() ? "" : " ",
+                                     where, DidYouMean(given, allowed), Join(allowed)));
+    }
+  }
+
+  // A number from `low` to `high`; `otherwise` where the key is not there.
+  double Number(const toml::table& table, const char* key, double otherwise, double low, double high) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return otherwise;
+    const double value = node->is_number() ? *node->value<double>() : std::nan("");
+    if (!(value >= low && value <= high))
+      Fail(node->source(), fmt::format("'{}' must be a number from {} to {}", key, low, high));
+    return value;
+  }
+};
+
+}  // namespace lobefit
