@@ -67,6 +67,7 @@ int Run(int argc, char** argv) {
   app.failure_message(CLI::FailureMessage::help);
   CommonOptions common;
   common.command = CommandLine(argc, argv);
+  common.words.assign(argv + std::min(argc, 1), argv + argc);
   std::function<int()> run;
   for (const Verb& verb : kVerbs) {
     CLI::App* sub = app.add_subcommand(verb.name, verb.description);

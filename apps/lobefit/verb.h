@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -12,7 +13,8 @@ namespace lobefit {
 struct CommonOptions {
   int threads = 0;  // 0: as many as the process may use
   bool json = false;
-  std::string command;  // the whole command line, for the record in results
+  std::string command;             // the whole command line, for the record in results
+  std::vector<std::string> words;  // the same after the program's name
 
   int Threads() const;
 };
