@@ -28,6 +28,7 @@ std::function<int()> SetUpCompare(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpConvert(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpExport(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common);
+std::function<int()> SetUpFormats(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpMaps(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common);
