@@ -9,6 +9,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/core/brdf/vndf.h"
+#include "lobefit/fit/instrument.h"
 #include "lobefit/io/bsdf_xml/angle_basis.h"
 #include "lobefit/io/merl/table.h"
 #include "lobefit/io/read.h"
@@ -175,12 +176,13 @@ MeasurementLayout MakeLayout(const LayoutRequest& request, const Truth& truth) {
 }
 
 void RequireApertureWithin(const MeasurementLayout& layout, const Noise& noise) {
-  if (2 * noise.aperture > layout.step * (1 + 1e-9)) {
-    throw UsageError(fmt::format(
-        "an aperture of half angle {:.3g} degrees is wider than the step of the grid, {:.3g} degrees, so that "
-        "neighbouring samples overlap; choose at most aperture={:.3g}, or a wider --detector-step",
-        RadiansToDegrees(noise.aperture), RadiansToDegrees(layout.step), RadiansToDegrees(layout.step / 2)));
-  }
+  const double widest = std::max(noise.aperture, noise.source);
+  if (!(widest > kMostSteps * layout.step * (1 + 1e-9))) return;
+  throw UsageError(fmt::format(
+      "a disc of half angle {:.3g} degrees is more than {:g} times the step of the grid, {:.3g} degrees, so that its "
+      "samples "
+      "would all be the same average; choose at most {:.3g}, or a wider --detector-step",
+      RadiansToDegrees(widest), kMostSteps, RadiansToDegrees(layout.step), RadiansToDegrees(kMostSteps * layout.step)));
 }
 
 }  // namespace lobefit

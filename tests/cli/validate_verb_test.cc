@@ -63,7 +63,7 @@ TEST_F(ValidateVerb, WhatIsNotAllowedIsSaid) {
   EXPECT_THAT(error("--trials 0"), testing::HasSubstr("--trials"));
   EXPECT_THAT(error("--layout goniometr"), testing::HasSubstr("did you mean 'goniometer'?"));
   EXPECT_THAT(error("--noise drif=1"), testing::HasSubstr("did you mean 'drift'?"));
-  EXPECT_THAT(error("--noise aperture=6"), testing::HasSubstr("wider than the step of the grid, 5 degrees"));
+  EXPECT_THAT(error("--noise aperture=26"), testing::HasSubstr("5 times the step of the grid, 5 degrees"));
   EXPECT_THAT(error("--noise holes=2"), testing::HasSubstr("[0, 0.99]"));
 }
 
