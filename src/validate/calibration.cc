@@ -10,6 +10,7 @@
 namespace lobefit {
 namespace {
 
+constexpr double kNormal95 = 1.959963984540054;   // quantile of the normal distribution, two-sided
 constexpr double kOneSigma = 0.6826894921370859;  // probability within one standard deviation
 // Quantile of the normal distribution that one of 1000 numbers exceeds on either side.
 constexpr double kChance = 3.290526731491926;
@@ -39,12 +40,13 @@ class IntervalTally {
  public:
   void Add(double error, double standard_error, double freedom) {
     const double z = error / standard_error;
-    z_.Add(z);
     if (freedom != freedom_) {
       freedom_ = freedom;
       quantile_68_ = StudentTQuantile((1 + kOneSigma) / 2, freedom);
       quantile_95_ = StudentTQuantile(0.975, freedom);
     }
+    // Student's t of 3 degrees of freedom spreads by 1.7: so that 1 is right for any of them.
+    z_.Add(z * kNormal95 / quantile_95_);
     within_68_ += std::fabs(z) <= quantile_68_ ? 1 : 0;
     within_95_ += std::fabs(z) <= quantile_95_ ? 1 : 0;
   }

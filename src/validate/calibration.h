@@ -19,7 +19,8 @@ Share ShareOf(std::size_t count, std::size_t total, double sigmas = 1.9599639845
 
 // Intervals of one kind: value +- quantile * standard error.
 struct IntervalCalibration {
-  double z_mean = 0, z_sd = 0;  // of (value - truth) / standard error
+  // Of (value - truth) / standard error, over the quantile at 95 % and times the normal distribution's.
+  double z_mean = 0, z_sd = 0;
   Share within_68, within_95;
 };
 

@@ -73,6 +73,9 @@ TEST(DriftFit, IntervalsOfSamplesTakenAsIndependentHoldUnderDrift) {
     };
     held_without += holds(without, kF0) ? 1 : 0;
     held_with += holds(with, kThetaY) ? 1 : 0;
+    // The scatter of 12 gains is known with 11 degrees of freedom, and F0 no better.
+    EXPECT_LT(with.parameters[kF0].freedom[0], 11);
+    EXPECT_GT(with.parameters[kF0].freedom[0], 3);
     held_f0 += holds(with, kF0) ? 1 : 0;
     sum_of_squares += with.instrument->drift->sd * with.instrument->drift->sd;
   }

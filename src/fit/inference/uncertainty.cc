@@ -1,15 +1,24 @@
 #include "lobefit/fit/inference/uncertainty.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "lobefit/fit/inference/bread.h"
 #include "lobefit/fit/inference/sandwich.h"
+#include "lobefit/fit/objective/gains.h"
 
 namespace lobefit {
 namespace {
 
 bool IsFinite(const Eigen::MatrixXd& jacobian, Eigen::Index row) { return jacobian.row(row).allFinite(); }
+
+// The scatter of K gains is known from them, with K - 1 degrees of freedom; a number whose variance comes from it to a
+// share has no more than the combination of both [Satterthwaite 1946]. Of f0 over 6 incidences under a drift of 2 %
+// intervals held 90 % without this.
+double FreedomUnderDrift(double freedom, const Gains& gains, double share) {
+  return 1 / (1 / freedom + share * share / (static_cast<double>(gains.size()) - 1));
+}
 
 }  // namespace
 
@@ -51,8 +60,15 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
   } else {
     result.clustered.setZero(jacobian.rows(), jacobian.rows());
   }
-  for (Eigen::Index row = 0; row < jacobian.rows(); ++row)
+  const bool scatter_estimated = problem.gains() != nullptr && !layout.recipe().instrument.drift->sd;
+  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
     result.freedom.push_back(result.has_clusters ? filling.freedom(row) : kNan);
+    const double variance = entries.row(row) * filling.samples * entries.row(row).transpose();
+    if (!scatter_estimated || !(variance > 0)) continue;
+    const double of_gains = entries.row(row) * bread.prior_of_gains * entries.row(row).transpose();
+    result.freedom.back() =
+        FreedomUnderDrift(result.freedom.back(), *problem.gains(), std::min(1.0, of_gains / variance));
+  }
   return result;
 }
 
