@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/maps/output/previews.h"
+#include "lobefit/maps/output/pixels.h"
 #include "lobefit/maps/stack/reader.h"
 
 namespace lobefit {

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfStdIO.h>
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
-#include "lobefit/maps/output/previews.h"
+#include "lobefit/maps/output/pixels.h"
 #include "lobefit/synthesis/random.h"
 
 namespace lobefit {
@@ -38,25 +33,6 @@ std::vector<float> Photograph(const Maps& maps, const StackSynthesis& synthesis,
     }
   }
   return image;
-}
-
-std::string EncodeExr(std::vector<float> image, std::size_t width, std::size_t height, std::size_t channels) {
-  Imf::Header header(static_cast<int>(width), static_cast<int>(height));
-  header.compression() = Imf::ZIP_COMPRESSION;
-  Imf::FrameBuffer buffer;
-  for (std::size_t c = 0; c < channels; ++c) {
-    const std::string name(1, channels == 1 ? 'Y' : "RGB"[c]);
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    char* base = static_cast<char*>(static_cast<void*>(image.data() + c));
-    buffer.insert(name, Imf::Slice(Imf::FLOAT, base, sizeof(float) * channels, sizeof(float) * channels * width));
-  }
-  Imf::StdOSStream bytes;
-  {
-    Imf::OutputFile file(bytes, header, 0);
-    file.setFrameBuffer(buffer);
-    file.writePixels(static_cast<int>(height));
-  }
-  return bytes.str();
 }
 
 std::string EncodeSixteen(const std::vector<float>& image, double intensity, std::size_t width, std::size_t height,
