@@ -4,13 +4,17 @@
 #include <cmath>
 
 #include "output.h"
+#include "report_formats.h"
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/progress.h"
 #include "lobefit/maps/bands.h"
 #include "lobefit/maps/document.h"
 #include "lobefit/maps/report/page.h"
+#include "lobefit/maps/report/web/html.h"
 #include "lobefit/maps/stack/reader.h"
 #include "lobefit/math/directions.h"
 
@@ -33,7 +37,10 @@ double MeanPsnr(const std::vector<RelitLight>& lights, bool fitted, std::size_t*
 }  // namespace
 
 int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& stack_path, const StackOptions& options,
-               const std::filesystem::path& out, double scale) {
+               const std::vector<std::string>& formats, const std::filesystem::path& out, double scale) {
+  if (std::find(formats.begin(), formats.end(), "exr") != formats.end()) {
+    throw UsageError("--format exr: maps are an EXR themselves; allowed for them: png, html");
+  }
   std::filesystem::path picture = out;
   std::error_code error;
   if (out.empty() || std::filesystem::is_directory(out, error)) {
@@ -43,7 +50,7 @@ int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& s
   const Stack stack = OpenStack(stack_path, options);
   std::vector<std::filesystem::path> inputs = stack.images;
   inputs.push_back(path);
-  CheckPicture(picture, inputs);
+  CheckReports(formats, picture, inputs);
   const Maps maps = ReadMapsExr(path);
   const MapsRecord record = ReadMapsRecord(std::filesystem::path(path).replace_extension(".json"));
   if (maps.rows.width != stack.width || maps.rows.rows != stack.height ||
@@ -62,8 +69,13 @@ int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& s
                               stack.lights.size(), stack.width, stack.height, fitted_psnr);
   page.subtitle += left_out > 0 ? fmt::format(", {} that were left out to {:.1f} dB", left_out, honest)
                                 : "; `maps --leave-out` shows how well a light is met that was not fitted";
-  WriteMapsReport(maps, stack, page, scale, picture);
-  Print(page.subtitle + "\nReport: " + PrintableName(picture) + "\n");
+  Print(page.subtitle + "\n");
+  for (const std::string& format : formats) {
+    const std::filesystem::path file = std::filesystem::path(picture).replace_extension(format);
+    if (format == "png") WriteMapsReport(maps, stack, page, scale, file);
+    if (format == "html") WriteFileAtomically(file, MapsHtml(maps, stack, page));
+    Print((format == "png" ? "Picture: " : "Page:    ") + PrintableName(file) + "\n");
+  }
   return kExitDone;
 }
 

@@ -48,7 +48,8 @@ std::filesystem::path PictureOf(const ReportVerb& verb) {
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   if (verb.material.ends_with(".maps.exr")) {
     if (verb.files.size() != 1) throw UsageError("maps are drawn against one image stack");
-    return ReportMaps(verb.material, verb.files[0], {verb.encoding}, verb.out, verb.scale);
+    return ReportMaps(verb.material, verb.files[0], {verb.encoding}, ParseReportFormats(verb.format), verb.out,
+                      verb.scale);
   }
   const std::vector<std::string> formats = ParseReportFormats(verb.format);
   std::vector<std::filesystem::path> inputs = InputPaths(verb.files);
@@ -77,8 +78,9 @@ std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
       ->required();
   app->add_option("--out", verb->out,
                   "the picture, or the folder for it (default: NAME.report.png beside the material)");
-  app->add_option("--format", verb->format,
-                  "png (default), html, exr (the maps behind the pictures), or several with commas between");
+  app->add_option(
+      "--format", verb->format,
+      "png (default), html (live), exr (the maps behind the pictures; not of maps), or several with commas between");
   app->add_option("--scale", verb->scale, "pixels to one unit of the page, which is 1320 units wide (default 2)")
       ->check(CLI::Range(0.25, 4.0));
   app->add_option("--encoding", verb->encoding, "of an image stack: how pixels are stored: linear, srgb, gamma:G");
