@@ -61,7 +61,8 @@ int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& s
   }
   MapsPage page;
   page.fallback = MedianFallback(maps);
-  page.lights = JudgeLights(maps, stack, record.left_out, page.fallback);
+  const Judgement judgement = JudgeLights(maps, stack, record.left_out, page.fallback);
+  page.lights = judgement.lights;
   page.title = "One fit a texel: " + PrintableName(path.filename());
   std::size_t fitted, left_out;
   const double fitted_psnr = MeanPsnr(page.lights, true, &fitted), honest = MeanPsnr(page.lights, false, &left_out);
@@ -70,6 +71,7 @@ int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& s
   page.subtitle += left_out > 0 ? fmt::format(", {} that were left out to {:.1f} dB", left_out, honest)
                                 : "; `maps --leave-out` shows how well a light is met that was not fitted";
   Print(page.subtitle + "\n");
+  for (const std::string& remark : judgement.doubts.Remarks()) Print("Note: " + remark + "\n");
   for (const std::string& format : formats) {
     const std::filesystem::path file = std::filesystem::path(picture).replace_extension(format);
     if (format == "png") WriteMapsReport(maps, stack, page, scale, file);
@@ -124,6 +126,7 @@ int DescribeStack(const std::filesystem::path& path, const StackOptions& options
                                              {"encoding", EncodingWord(stack.response)},
                                              {"calibrated", stack.calibrated},
                                              {"light_theta_deg", {low, high}},
+                                             {"lights", stack.near ? "near" : "distant"},
                                              {"saturated", saturated},
                                              {"dark", dark},
                                              {"negative", negative},
@@ -137,7 +140,10 @@ int DescribeStack(const std::filesystem::path& path, const StackOptions& options
   text += fmt::format("  images       {} of {} x {}, {} channels, {}\n", stack.images.size(), stack.width, stack.height,
                       stack.channels, EncodingWord(stack.response));
   text += fmt::format("  texels       {}{}\n", stack.Texels(), stack.mask.empty() ? "" : " within the mask");
-  text += fmt::format("  lights       theta {:.1f} to {:.1f} degrees, distant\n", low, high);
+  text += fmt::format("  lights       theta {:.1f} to {:.1f} degrees, {}\n", low, high,
+                      stack.near ? fmt::format("near: {:.4g} mm from the middle of a picture of {:.4g} mm (mean)",
+                                               stack.near->reference_mm, stack.near->width_mm)
+                                 : "distant");
   text += fmt::format("  unit         {}\n",
                       stack.calibrated ? "f_r cos_theta_i, 1/sr" : "one unknown factor of f_r cos_theta_i");
   text += fmt::format(

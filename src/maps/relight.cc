@@ -62,10 +62,14 @@ RelitTexel RelitTexelAt(const Maps& maps, std::size_t texel, const Fallback& fal
 }
 
 Relighting::Relighting(const Maps& maps, const std::vector<Vec3>& lights, bool schlick, const Fallback& fallback)
-    : maps_(maps), fallback_(fallback) {
+    : maps_(maps), schlick_(schlick), fallback_(fallback) {
   lights_.Resize(lights.size());
-  for (std::size_t l = 0; l < lights.size(); ++l) lights_.Set(l, lights[l], schlick);
+  MoveLights(lights);
   shape_.Resize(lights_.padded);
+}
+
+void Relighting::MoveLights(const std::vector<Vec3>& lights) {
+  for (std::size_t l = 0; l < lights.size(); ++l) lights_.Set(l, lights[l], schlick_);
 }
 
 void Relighting::Texel(std::size_t texel, double* values, std::size_t stride) {

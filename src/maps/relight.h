@@ -31,11 +31,14 @@ class Relighting {
  public:
   // `maps` as for RelitTexelAt; they must outlive this.
   Relighting(const Maps& maps, const std::vector<Vec3>& lights, bool schlick, const Fallback& fallback);
+  // Moves the lights, as many as before.
+  void MoveLights(const std::vector<Vec3>& lights);
   // values[channel stride + light]; NaN where the texel has no normal. Not for several threads at once.
   void Texel(std::size_t texel, double* values, std::size_t stride);
 
  private:
   const Maps& maps_;
+  bool schlick_;
   LightArrays lights_;
   ShapeArrays shape_;
   Fallback fallback_;

@@ -33,7 +33,7 @@ class MapsPageTest : public FolderTest, public testing::WithParamInterface<MapLo
     hills_.maps.rows.values[plane(GetParam() == MapLobe::kGgx ? "alpha" : "alpha_x")][200] = NAN;
     page_.title = "odd <name> & \"more\"";
     page_.fallback = MedianFallback(hills_.maps);
-    page_.lights = JudgeLights(hills_.maps, stack_, {3}, page_.fallback);
+    page_.lights = JudgeLights(hills_.maps, stack_, {3}, page_.fallback).lights;
     html_ = MapsHtml(hills_.maps, stack_, page_);
   }
 

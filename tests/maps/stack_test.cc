@@ -171,7 +171,16 @@ TEST_F(StackReading, ManifestErrorsNameTheLine) {
   Write("stack.toml", "saturation = 7\n[lights]\nfile = \"a.lp\"\n");
   ExpectRefused("stack.toml:1: 'saturation' must be a number from 0.1 to 1");
   Write("stack.toml", "[lights]\nfile = \"a.lp\"\nkind = \"near\"\n");
-  ExpectRefused("stack.toml:3: lights of kind 'near' are not understood");
+  ExpectRefused("stack.toml:3: kind = 'near' is unknown; allowed: distant, position");
+  Write("stack.toml", "[lights]\nfile = \"a.lp\"\nkind = \"position\"\n");
+  ExpectRefused("need [plane] with width_mm, the width of the picture");
+  Write("stack.toml", "[lights]\nfile = \"a.lp\"\nkind = \"position\"\n[plane]\nwidth_mm = 0\n");
+  ExpectRefused("stack.toml:5: 'width_mm' must be a number from 0.001");
+  Write("stack.toml", "[lights]\nfile = \"a.lp\"\nexponent = 1\n");
+  ExpectRefused("falloff and exponent are for kind = \"position\"");
+  Write("stack.toml", "[lights]\nfile = \"a.lp\"\nkind = \"position\"\n[plane]\nwidth_mm = 9\n");
+  WriteLights(4, -5);
+  ExpectRefused("light 1 at z = -5 mm is not in front of the picture");
   Write("stack.toml", "images = [\n");
   ExpectRefused("stack.toml:");
 }

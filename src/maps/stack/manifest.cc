@@ -58,15 +58,34 @@ void ReadImages(const Manifest& manifest, const toml::table& table, Stack* stack
   stack->images = manifest.Matching(manifest.Text(table, "images"));
 }
 
+// The positions that the file of lights gave, and the scale of the picture.
+void ReadNear(const Manifest& manifest, const toml::table& table, const toml::table& lights, Stack* stack) {
+  const toml::table* plane = table["plane"].as_table();
+  if (plane == nullptr || !plane->contains("width_mm")) {
+    throw InputError(manifest.name +
+                     ": lights of kind \"position\" need [plane] with width_mm, the width of the picture");
+  }
+  manifest.CheckKeys(*plane, {"width_mm"});
+  NearLights near;
+  near.width_mm = manifest.Number(*plane, "width_mm", 0, 1e-3, 1e6);
+  near.inverse_square = manifest.Word(lights, "falloff", {"inverse-square", "none"}) == 0;
+  near.exponent = manifest.Number(lights, "exponent", 0, 0, 100);
+  for (std::size_t l = 0; l < stack->lights.size(); ++l) {
+    const Vec3& place = stack->lights[l].place;
+    if (!(place.z > 0)) {
+      throw InputError(fmt::format("{}: light {} at z = {} mm is not in front of the picture, whose plane is z = 0",
+                                   manifest.name, l + 1, place.z));
+    }
+    near.reference_mm += Norm(place) / static_cast<double>(stack->lights.size());
+  }
+  stack->near = near;
+}
+
 void ReadLights(const Manifest& manifest, const toml::table& table, Stack* stack) {
   const toml::table* lights = table["lights"].as_table();
   if (lights == nullptr) throw InputError(manifest.name + ": a table [lights] with file = \"...\" is needed");
-  manifest.CheckKeys(*lights, {"file", "intensity", "kind"});
-  const std::string kind = manifest.Text(*lights, "kind");
-  if (!kind.empty() && kind != "distant") {
-    manifest.Fail(lights->get("kind")->source(),
-                  fmt::format("lights of kind '{}' are not understood; allowed: distant", Excerpt(kind)));
-  }
+  manifest.CheckKeys(*lights, {"file", "intensity", "kind", "falloff", "exponent"});
+  const bool near = manifest.Word(*lights, "kind", {"distant", "position"}) == 1;
   const std::string file = manifest.Text(*lights, "file");
   if (file.empty()) throw InputError(manifest.name + ": [lights] needs file = \"...\": a .lp, or x y z a line");
   const std::filesystem::path path = manifest.folder / file;
@@ -77,8 +96,13 @@ void ReadLights(const Manifest& manifest, const toml::table& table, Stack* stack
   } else {
     for (const std::vector<double>& row : ReadTable(path, 3)) {
       const std::string place = fmt::format("{}, light {}", PrintableName(path), stack->lights.size() + 1);
-      stack->lights.push_back({LightDirection(row[0], row[1], row[2], place), {1, 1, 1}});
+      stack->lights.push_back({LightDirection(row[0], row[1], row[2], place), {1, 1, 1}, {row[0], row[1], row[2]}});
     }
+  }
+  if (near) {
+    ReadNear(manifest, table, *lights, stack);
+  } else if (lights->contains("falloff") || lights->contains("exponent")) {
+    throw InputError(manifest.name + ": [lights] falloff and exponent are for kind = \"position\"");
   }
   const std::string intensity = manifest.Text(*lights, "intensity");
   if (intensity.empty()) return;
@@ -104,7 +128,7 @@ StackFiles ReadManifest(const std::filesystem::path& file) {
   const Manifest manifest = {{PrintableName(file)}, file.parent_path()};
   const FileBytes bytes(file);
   const toml::table table = manifest.Parse(bytes.bytes());
-  manifest.CheckKeys(table, {"images", "mask", "encoding", "saturation", "black", "calibrated", "lights"});
+  manifest.CheckKeys(table, {"images", "mask", "encoding", "saturation", "black", "calibrated", "lights", "plane"});
   StackFiles files;
   Stack& stack = files.stack;
   stack.layout = "stack.toml";

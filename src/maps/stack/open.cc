@@ -140,6 +140,13 @@ std::string DigestOf(const Stack& stack) {
     all += fmt::format("{} {} {} {} {} {};", light.direction.x, light.direction.y, light.direction.z,
                        light.intensity[0], light.intensity[1], light.intensity[2]);
   }
+  if (stack.near) {
+    const NearLights& near = *stack.near;
+    all += fmt::format("near {} {} {} {};", near.width_mm, near.inverse_square, near.reference_mm, near.exponent);
+    for (const StackLight& light : stack.lights) {
+      all += fmt::format("{} {} {};", light.place.x, light.place.y, light.place.z);
+    }
+  }
   all.append(stack.mask.begin(), stack.mask.end());
   for (const std::filesystem::path& image : stack.images) all += Sha256(FileBytes(image).bytes());
   return Sha256Hex(all);

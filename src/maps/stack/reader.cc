@@ -5,6 +5,8 @@
 
 #include <sys/resource.h>
 
+#include "lobefit/maps/stack/geometry.h"
+
 namespace lobefit {
 namespace {
 
@@ -58,6 +60,12 @@ StackBand StackReader::Read(std::size_t first_row, std::size_t rows) {
                                       : ValueOf(stack_.response, static_cast<double>(stored), false);
           to[x * channels * lights] = value * scale;
         }
+      }
+      if (!stack_.near) continue;
+      for (std::size_t x = 0; x < width; ++x) {
+        const auto factor = static_cast<float>(1 / IrradianceAt(stack_, light, next_row_ * width + x));
+        float* to = band.values.data() + (y * width + x) * channels * lights + light;
+        for (std::size_t c = 0; c < channels; ++c) to[c * lights] *= factor;
       }
     }
   }
