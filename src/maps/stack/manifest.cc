@@ -24,7 +24,7 @@ struct Manifest : TomlFile {
     return *node->value<std::string>();
   }
   // The files of a pattern with one star in its last part, sorted by name.
-  std::vector<std::filesystem::path> Matching(const std::string& pattern) const {
+  std::vector<std::filesystem::path> Matching(const std::string& pattern, const char* key) const {
     const std::filesystem::path full = folder / pattern;
     const std::string last = full.filename().string();
     const std::size_t star = last.find('*');
@@ -40,10 +40,29 @@ struct Manifest : TomlFile {
       }
     }
     std::sort(found.begin(), found.end());
-    if (found.empty()) throw InputError(fmt::format("{}: no file matches images = '{}'", name, Excerpt(pattern)));
+    if (found.empty()) throw InputError(fmt::format("{}: no file matches {} = '{}'", name, key, Excerpt(pattern)));
     return found;
   }
 };
+
+// A board says all that intensities say: pixels become absolute.
+void ReadWhite(const Manifest& manifest, const toml::table& table, Stack* stack) {
+  const toml::node* node = table.get("white");
+  if (node == nullptr) {
+    if (table.contains("white_albedo")) throw InputError(manifest.name + ": white_albedo needs white = \"...\"");
+    return;
+  }
+  stack->white = manifest.Matching(manifest.Text(table, "white"), "white");
+  stack->white_albedo = manifest.Number(table, "white_albedo", 1, 0.01, 1.5);
+  stack->calibrated = true;
+  const toml::table* lights = table["lights"].as_table();
+  if (lights != nullptr && lights->contains("intensity")) {
+    manifest.Fail(node->source(), "white and the lights' intensity say the same; leave one of them out");
+  }
+  if (stack->white.size() == stack->images.size()) return;
+  manifest.Fail(node->source(), fmt::format("{} photographs of the white board, but {} images; one a light is expected",
+                                            stack->white.size(), stack->images.size()));
+}
 
 void ReadImages(const Manifest& manifest, const toml::table& table, Stack* stack) {
   const toml::node* node = table.get("images");
@@ -55,7 +74,7 @@ void ReadImages(const Manifest& manifest, const toml::table& table, Stack* stack
     }
     return;
   }
-  stack->images = manifest.Matching(manifest.Text(table, "images"));
+  stack->images = manifest.Matching(manifest.Text(table, "images"), "images");
 }
 
 // The positions that the file of lights gave, and the scale of the picture.
@@ -70,15 +89,7 @@ void ReadNear(const Manifest& manifest, const toml::table& table, const toml::ta
   near.width_mm = manifest.Number(*plane, "width_mm", 0, 1e-3, 1e6);
   near.inverse_square = manifest.Word(lights, "falloff", {"inverse-square", "none"}) == 0;
   near.exponent = manifest.Number(lights, "exponent", 0, 0, 100);
-  for (std::size_t l = 0; l < stack->lights.size(); ++l) {
-    const Vec3& place = stack->lights[l].place;
-    if (!(place.z > 0)) {
-      throw InputError(fmt::format("{}: light {} at z = {} mm is not in front of the picture, whose plane is z = 0",
-                                   manifest.name, l + 1, place.z));
-    }
-    near.reference_mm += Norm(place) / static_cast<double>(stack->lights.size());
-  }
-  stack->near = near;
+  SetNear(near, manifest.name, stack);
 }
 
 void ReadLights(const Manifest& manifest, const toml::table& table, Stack* stack) {
@@ -128,7 +139,8 @@ StackFiles ReadManifest(const std::filesystem::path& file) {
   const Manifest manifest = {{PrintableName(file)}, file.parent_path()};
   const FileBytes bytes(file);
   const toml::table table = manifest.Parse(bytes.bytes());
-  manifest.CheckKeys(table, {"images", "mask", "encoding", "saturation", "black", "calibrated", "lights", "plane"});
+  manifest.CheckKeys(table, {"images", "mask", "encoding", "saturation", "black", "calibrated", "lights", "plane",
+                             "dark", "white", "white_albedo"});
   StackFiles files;
   Stack& stack = files.stack;
   stack.layout = "stack.toml";
@@ -143,6 +155,9 @@ StackFiles ReadManifest(const std::filesystem::path& file) {
     stack.calibrated = *node->value<bool>();
   }
   if (!mask.empty()) files.mask = manifest.folder / mask;
+  const std::string dark = manifest.Text(table, "dark");
+  if (!dark.empty()) stack.dark = manifest.folder / dark;
+  ReadWhite(manifest, table, &stack);
   return files;
 }
 

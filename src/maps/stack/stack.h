@@ -41,6 +41,9 @@ struct Stack {
   std::size_t width = 0, height = 0, channels = 0;
   std::vector<std::uint8_t> mask;  // [row width + column], 0: no texel; empty: all are
   Response response;
+  std::filesystem::path dark;                // photograph without a light, subtracted; empty: none
+  std::vector<std::filesystem::path> white;  // of a white matt board under each light, divided by; empty: none
+  double white_albedo = 1;
   bool calibrated = false;
   std::vector<std::string> remarks;
 
