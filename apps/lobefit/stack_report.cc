@@ -37,15 +37,9 @@ double MeanPsnr(const std::vector<RelitLight>& lights, bool fitted, std::size_t*
 }  // namespace
 
 int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& stack_path, const StackOptions& options,
-               const std::vector<std::string>& formats, const std::filesystem::path& out, double scale) {
+               const std::vector<std::string>& formats, const std::filesystem::path& picture, double scale) {
   if (std::find(formats.begin(), formats.end(), "exr") != formats.end()) {
     throw UsageError("--format exr: maps are an EXR themselves; allowed for them: png, html");
-  }
-  std::filesystem::path picture = out;
-  std::error_code error;
-  if (out.empty() || std::filesystem::is_directory(out, error)) {
-    const std::filesystem::path folder = out.empty() ? path.parent_path() : out;
-    picture = folder / path.stem().concat(".report.png");
   }
   const Stack stack = OpenStack(stack_path, options);
   std::vector<std::filesystem::path> inputs = stack.images;

@@ -30,8 +30,9 @@ struct ReportVerb {
 // The picture's file: --out, a name in the folder --out, or beside the material.
 std::filesystem::path PictureOf(const ReportVerb& verb) {
   std::string name = std::filesystem::path(verb.material).filename().string();
-  const std::string ending = ".material.json";
-  if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+  for (const std::string_view ending : {".material.json", ".exr"}) {
+    if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+  }
   name += ".report.png";
   if (verb.out.empty()) return std::filesystem::path(verb.material).parent_path() / name;
   const std::filesystem::path out = verb.out;
@@ -48,7 +49,7 @@ std::filesystem::path PictureOf(const ReportVerb& verb) {
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   if (verb.material.ends_with(".maps.exr")) {
     if (verb.files.size() != 1) throw UsageError("maps are drawn against one image stack");
-    return ReportMaps(verb.material, verb.files[0], {verb.encoding}, ParseReportFormats(verb.format), verb.out,
+    return ReportMaps(verb.material, verb.files[0], {verb.encoding}, ParseReportFormats(verb.format), PictureOf(verb),
                       verb.scale);
   }
   const std::vector<std::string> formats = ParseReportFormats(verb.format);
