@@ -4,13 +4,17 @@
 #include <cmath>
 
 #include "output.h"
+#include "report_formats.h"
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/progress.h"
 #include "lobefit/maps/bands.h"
 #include "lobefit/maps/document.h"
 #include "lobefit/maps/report/page.h"
+#include "lobefit/maps/report/web/html.h"
 #include "lobefit/maps/stack/reader.h"
 #include "lobefit/math/directions.h"
 
@@ -33,17 +37,14 @@ double MeanPsnr(const std::vector<RelitLight>& lights, bool fitted, std::size_t*
 }  // namespace
 
 int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& stack_path, const StackOptions& options,
-               const std::filesystem::path& out, double scale) {
-  std::filesystem::path picture = out;
-  std::error_code error;
-  if (out.empty() || std::filesystem::is_directory(out, error)) {
-    const std::filesystem::path folder = out.empty() ? path.parent_path() : out;
-    picture = folder / path.stem().concat(".report.png");
+               const std::vector<std::string>& formats, const std::filesystem::path& picture, double scale) {
+  if (std::find(formats.begin(), formats.end(), "exr") != formats.end()) {
+    throw UsageError("--format exr: maps are an EXR themselves; allowed for them: png, html");
   }
   const Stack stack = OpenStack(stack_path, options);
   std::vector<std::filesystem::path> inputs = stack.images;
   inputs.push_back(path);
-  CheckPicture(picture, inputs);
+  CheckReports(formats, picture, inputs);
   const Maps maps = ReadMapsExr(path);
   const MapsRecord record = ReadMapsRecord(std::filesystem::path(path).replace_extension(".json"));
   if (maps.rows.width != stack.width || maps.rows.rows != stack.height ||
@@ -54,7 +55,8 @@ int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& s
   }
   MapsPage page;
   page.fallback = MedianFallback(maps);
-  page.lights = JudgeLights(maps, stack, record.left_out, page.fallback);
+  const Judgement judgement = JudgeLights(maps, stack, record.left_out, page.fallback);
+  page.lights = judgement.lights;
   page.title = "One fit a texel: " + PrintableName(path.filename());
   std::size_t fitted, left_out;
   const double fitted_psnr = MeanPsnr(page.lights, true, &fitted), honest = MeanPsnr(page.lights, false, &left_out);
@@ -62,8 +64,14 @@ int ReportMaps(const std::filesystem::path& path, const std::filesystem::path& s
                               stack.lights.size(), stack.width, stack.height, fitted_psnr);
   page.subtitle += left_out > 0 ? fmt::format(", {} that were left out to {:.1f} dB", left_out, honest)
                                 : "; `maps --leave-out` shows how well a light is met that was not fitted";
-  WriteMapsReport(maps, stack, page, scale, picture);
-  Print(page.subtitle + "\nReport: " + PrintableName(picture) + "\n");
+  Print(page.subtitle + "\n");
+  for (const std::string& remark : judgement.doubts.Remarks()) Print("Note: " + remark + "\n");
+  for (const std::string& format : formats) {
+    const std::filesystem::path file = std::filesystem::path(picture).replace_extension(format);
+    if (format == "png") WriteMapsReport(maps, stack, page, scale, file);
+    if (format == "html") WriteFileAtomically(file, MapsHtml(maps, stack, page));
+    Print((format == "png" ? "Picture: " : "Page:    ") + PrintableName(file) + "\n");
+  }
   return kExitDone;
 }
 
@@ -112,6 +120,7 @@ int DescribeStack(const std::filesystem::path& path, const StackOptions& options
                                              {"encoding", EncodingWord(stack.response)},
                                              {"calibrated", stack.calibrated},
                                              {"light_theta_deg", {low, high}},
+                                             {"lights", stack.near ? "near" : "distant"},
                                              {"saturated", saturated},
                                              {"dark", dark},
                                              {"negative", negative},
@@ -125,7 +134,10 @@ int DescribeStack(const std::filesystem::path& path, const StackOptions& options
   text += fmt::format("  images       {} of {} x {}, {} channels, {}\n", stack.images.size(), stack.width, stack.height,
                       stack.channels, EncodingWord(stack.response));
   text += fmt::format("  texels       {}{}\n", stack.Texels(), stack.mask.empty() ? "" : " within the mask");
-  text += fmt::format("  lights       theta {:.1f} to {:.1f} degrees, distant\n", low, high);
+  text += fmt::format("  lights       theta {:.1f} to {:.1f} degrees, {}\n", low, high,
+                      stack.near ? fmt::format("near: {:.4g} mm from the middle of a picture of {:.4g} mm (mean)",
+                                               stack.near->reference_mm, stack.near->width_mm)
+                                 : "distant");
   text += fmt::format("  unit         {}\n",
                       stack.calibrated ? "f_r cos_theta_i, 1/sr" : "one unknown factor of f_r cos_theta_i");
   text += fmt::format(

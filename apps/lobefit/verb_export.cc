@@ -1,7 +1,9 @@
 // lobefit export: the fitted material as files that renderers load, and what each of them cannot carry.
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
+#include "maps_export.h"
 #include "verb.h"
 #include <fmt/format.h>
 
@@ -15,7 +17,8 @@ namespace lobefit {
 namespace {
 
 struct ExportVerb {
-  std::string material, targets, out = ".", name, map_path;
+  std::string material, targets, out = ".", name, map_path, normal_y = "up";
+  double white = kNan;
   bool refit = false, copy = false, list = false;
 };
 
@@ -51,7 +54,7 @@ int RunExport(const ExportVerb& verb, const CommonOptions& common) {
   options.name = verb.name;
   if (options.name.empty()) {
     options.name = std::filesystem::path(verb.material).filename().string();
-    for (const std::string_view ending : {".json", ".material"}) {
+    for (const std::string_view ending : {".json", ".material", ".exr", ".maps"}) {
       if (options.name.size() > ending.size() && options.name.ends_with(ending)) {
         options.name.resize(options.name.size() - ending.size());
       }
@@ -66,6 +69,12 @@ int RunExport(const ExportVerb& verb, const CommonOptions& common) {
   options.map_path = verb.map_path;
   if (!options.map_path.empty() && !options.map_path.ends_with('/')) options.map_path += '/';
   options.threads = common.Threads();
+  if (verb.material.ends_with(".maps.exr")) {
+    if (verb.refit || verb.copy) throw UsageError("--refit and --copy are for one material; maps are copied");
+    const MapsExportOptions more = {verb.normal_y == "up" ? NormalY::kUp : NormalY::kDown, verb.white};
+    return ExportMapsFile(verb.material, options, more, common.json);
+  }
+  if (!std::isnan(verb.white) || verb.normal_y != "up") throw UsageError("--white and --normal-y are for maps");
   const Material material = ReadMaterial(verb.material);
   const ExportOutcome outcome = ExportMaterial(material, options);
   fmt::print("{}", common.json ? ExportJson(material, options, outcome) : ExportSummary(outcome));
@@ -79,13 +88,20 @@ int RunExport(const ExportVerb& verb, const CommonOptions& common) {
 
 std::function<int()> SetUpExport(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<ExportVerb>();
-  app->add_option("MATERIAL", verb->material, "a *.material.json");
+  app->add_option("MATERIAL", verb->material,
+                  "a *.material.json, or NAME.maps.exr of `lobefit maps` with NAME.maps.json beside it");
   app->add_option("--to", verb->targets, "targets with commas between; --list shows them");
   app->add_option("--out", verb->out, "folder of the files (default: this one)");
   app->add_option("--name", verb->name, "name of the material and its files (default: that of MATERIAL)");
-  app->add_option(
-      "--map-path", verb->map_path,
-      "folder that pbrt and Mitsuba are to look for normal maps in, from the main scene (default: beside it)");
+  app->add_option("--map-path", verb->map_path,
+                  "folder that pbrt and Mitsuba are to look for pictures in, from the main scene (default: beside it)");
+  app->add_option("--normal-y", verb->normal_y,
+                  "of maps: up (default, as all targets have it), or down: another picture of the normals for DirectX")
+      ->check(CLI::IsMember({"up", "down"}));
+  app->add_option("--white", verb->white,
+                  "of maps whose stack is not calibrated: the albedo in their unit that becomes 1 (default: the 99.5th "
+                  "percentile of diffuse + F0)")
+      ->check(CLI::PositiveNumber);
   CLI::Option* refit = app->add_flag("--refit", verb->refit,
                                      "fit the target's own model to the fit instead of copying its numbers (default: "
                                      "whichever is nearer)");

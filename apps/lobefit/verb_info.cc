@@ -20,7 +20,7 @@
 namespace lobefit {
 namespace {
 
-struct Range {
+struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
   void Add(double x) {
     low = std::min(low, x);
@@ -30,8 +30,8 @@ struct Range {
 
 struct Description {
   Incidences incidences;
-  Range theta_i, theta_o;
-  std::vector<Range> values;
+  Extent theta_i, theta_o;
+  std::vector<Extent> values;
   bool in_plane;
   std::optional<Statistics> statistics;
 };
@@ -44,14 +44,14 @@ Description DescribeRanges(const Measurement& measurement) {
   Description description = {GroupByIncidence(measurement),
                              {},
                              {},
-                             std::vector<Range>(samples.values.size()),
+                             std::vector<Extent>(samples.values.size()),
                              !measurement.isotropic && IsInPlane(samples),
                              {}};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     description.theta_i.Add(samples.wi_z[i]);
     description.theta_o.Add(samples.wo_z[i]);
   }
-  for (Range* range : {&description.theta_i, &description.theta_o}) {
+  for (Extent* range : {&description.theta_i, &description.theta_o}) {
     *range = {RadiansToDegrees(std::acos(std::min(1.0, range->high))),
               RadiansToDegrees(std::acos(std::min(1.0, range->low)))};
   }
@@ -132,7 +132,7 @@ std::string ToJson(const Measurement& measurement, const Description& descriptio
         {{"theta_i_deg", RadiansToDegrees(PolarAngle(wi))}, {"phi_i_deg", RadiansToDegrees(Azimuth(wi))}});
   }
   nlohmann::ordered_json values = nlohmann::ordered_json::array();
-  for (const Range& range : description.values) values.push_back({range.low, range.high});
+  for (const Extent& range : description.values) values.push_back({range.low, range.high});
   nlohmann::ordered_json json = {{"file", measurement.source},
                                  {"sha256", measurement.sha256},
                                  {"format", measurement.format},

@@ -133,9 +133,11 @@ int RunMapsVerb(const MapsVerb& verb, const CommonOptions& common) {
 
 std::function<int()> SetUpMaps(CLI::App* app, CommonOptions* common) {
   auto verb = std::make_shared<MapsVerb>();
-  app->add_option("STACK", verb->stack,
-                  "a folder of DiLiGenT's layout, an RTI light file (.lp) beside its images, or a stack.toml (or its "
-                  "folder); images are PNG or OpenEXR")
+  app->add_option(
+         "STACK", verb->stack,
+         "a folder of DiLiGenT's layout, an RTI light file (.lp) or a RelightLab dome (.dome) beside its images, a "
+         "folder of images named by angles (tl045 pl090 tv000 pv000.png), or a stack.toml (or its folder); "
+         "images are PNG or OpenEXR")
       ->required();
   app->add_option("--recipe", verb->recipe, "what to fit: a recipe of fits/maps by name, or a file (default ggx-maps)");
   app->add_option("--out", verb->out, "folder of the results (default: here)");

@@ -30,8 +30,9 @@ struct ReportVerb {
 // The picture's file: --out, a name in the folder --out, or beside the material.
 std::filesystem::path PictureOf(const ReportVerb& verb) {
   std::string name = std::filesystem::path(verb.material).filename().string();
-  const std::string ending = ".material.json";
-  if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+  for (const std::string_view ending : {".material.json", ".exr"}) {
+    if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+  }
   name += ".report.png";
   if (verb.out.empty()) return std::filesystem::path(verb.material).parent_path() / name;
   const std::filesystem::path out = verb.out;
@@ -48,7 +49,8 @@ std::filesystem::path PictureOf(const ReportVerb& verb) {
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   if (verb.material.ends_with(".maps.exr")) {
     if (verb.files.size() != 1) throw UsageError("maps are drawn against one image stack");
-    return ReportMaps(verb.material, verb.files[0], {verb.encoding}, verb.out, verb.scale);
+    return ReportMaps(verb.material, verb.files[0], {verb.encoding}, ParseReportFormats(verb.format), PictureOf(verb),
+                      verb.scale);
   }
   const std::vector<std::string> formats = ParseReportFormats(verb.format);
   std::vector<std::filesystem::path> inputs = InputPaths(verb.files);
@@ -77,8 +79,9 @@ std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
       ->required();
   app->add_option("--out", verb->out,
                   "the picture, or the folder for it (default: NAME.report.png beside the material)");
-  app->add_option("--format", verb->format,
-                  "png (default), html, exr (the maps behind the pictures), or several with commas between");
+  app->add_option(
+      "--format", verb->format,
+      "png (default), html (live), exr (the maps behind the pictures; not of maps), or several with commas between");
   app->add_option("--scale", verb->scale, "pixels to one unit of the page, which is 1320 units wide (default 2)")
       ->check(CLI::Range(0.25, 4.0));
   app->add_option("--encoding", verb->encoding, "of an image stack: how pixels are stored: linear, srgb, gamma:G");

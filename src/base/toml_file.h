@@ -54,6 +54,19 @@ struct TomlFile {
       Fail(node->source(), fmt::format("'{}' must be a number from {} to {}", key, low, high));
     return value;
   }
+
+  // Index of the word in `allowed`; 0 where the key is not there.
+  std::size_t Word(const toml::table& table, const char* key, const std::vector<std::string>& allowed) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return 0;
+    const std::string word = node->is_string() ? *node->value<std::string>() : "?";
+    const auto found = std::find(allowed.begin(), allowed.end(), word);
+    if (found == allowed.end()) {
+      Fail(node->source(), fmt::format("{} = '{}' is unknown{}; allowed: {}", key, Excerpt(word),
+                                       DidYouMean(word, allowed), Join(allowed)));
+    }
+    return static_cast<std::size_t>(found - allowed.begin());
+  }
 };
 
 }  // namespace lobefit

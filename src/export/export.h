@@ -69,7 +69,14 @@ std::string ExportSummary(const ExportOutcome& outcome);
 std::string RefusalText(const std::vector<Refusal>& refusals);
 // Figures of an error with what they are of, one line.
 std::string ErrorWords(const ExportError& error);
+// What was exported, for its record.
+struct ExportSource {
+  std::string kind;    // "material" or "maps"
+  std::string sha256;  // of it
+  std::string source;  // what it was fitted to
+};
 // As NAME.export.json.
+std::string ExportJson(const ExportSource& source, const ExportOptions& options, const ExportOutcome& outcome);
 std::string ExportJson(const Material& material, const ExportOptions& options, const ExportOutcome& outcome);
 
 }  // namespace lobefit

@@ -59,13 +59,14 @@ Json ResultJson(const ExportResult& result) {
   return json;
 }
 
-// Rows of other targets that an earlier export of the same material left.
-Json EarlierRows(const std::filesystem::path& path, const std::string& digest,
+// Rows of other targets that an earlier export of the same thing left.
+Json EarlierRows(const std::filesystem::path& path, const ExportSource& source,
                  const std::vector<ExportResult>& results) {
   Json rows = Json::array();
   std::ifstream in(path);
   const Json earlier = Json::parse(in, nullptr, false);
-  if (!earlier.is_object() || earlier.value("material_sha256", "") != digest || !earlier.contains("targets"))
+  if (!earlier.is_object() || earlier.value(source.kind + "_sha256", "") != source.sha256 ||
+      !earlier.contains("targets"))
     return rows;
   for (const Json& row : earlier["targets"]) {
     bool replaced = !row.is_object();
@@ -77,23 +78,26 @@ Json EarlierRows(const std::filesystem::path& path, const std::string& digest,
 
 }  // namespace
 
-std::string ExportJson(const Material& material, const ExportOptions& options, const ExportOutcome& outcome) {
-  const std::string digest = Sha256Hex(ToJson(material));
-  Json rows = EarlierRows(options.folder / (options.name + ".export.json"), digest, outcome.results);
+std::string ExportJson(const ExportSource& source, const ExportOptions& options, const ExportOutcome& outcome) {
+  Json rows = EarlierRows(options.folder / (options.name + ".export.json"), source, outcome.results);
   for (const ExportResult& result : outcome.results) rows.push_back(ResultJson(result));
   Json refused = Json::array();
   for (const Refusal& refusal : outcome.refusals) {
     refused.push_back({{"target", refusal.target->name}, {"reason", refusal.reason}});
   }
-  const Json json = {{"material", options.material_file},
-                     {"material_sha256", digest},
-                     {"source", material.source.file},
+  const Json json = {{source.kind, options.material_file},
+                     {source.kind + "_sha256", source.sha256},
+                     {"source", source.source},
                      {"version", Version()},
                      {"command", options.command},
                      {"remarks", outcome.remarks},
                      {"refused", refused},
                      {"targets", rows}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string ExportJson(const Material& material, const ExportOptions& options, const ExportOutcome& outcome) {
+  return ExportJson({"material", Sha256Hex(ToJson(material)), material.source.file}, options, outcome);
 }
 
 }  // namespace lobefit

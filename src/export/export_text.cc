@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "lobefit/base/text.h"
@@ -49,14 +51,14 @@ std::string Row(const ExportResult& result) {
   return fmt::format("{:<14} {:<10} {:>9} {:>9}  {:>9} {:>9}  {:>9}   {}\n", result.target->name, result.numbers,
                      level(error.lobe, error.lobe.median), level(error.lobe, error.lobe.percentile_90),
                      level(error.off, error.off.median), level(error.off, error.off.percentile_90),
-                     Percent(error.albedo), Join(names));
+                     std::isnan(error.albedo) ? "-" : Percent(error.albedo), Join(names));
 }
 
 }  // namespace
 
 std::string ErrorWords(const ExportError& error) {
-  return fmt::format("in the lobe {}; off it {}; albedo within {}", Levels(error.lobe), Levels(error.off),
-                     Percent(error.albedo));
+  const std::string albedo = std::isnan(error.albedo) ? "" : "; albedo within " + Percent(error.albedo);
+  return fmt::format("in the lobe {}; off it {}{}", Levels(error.lobe), Levels(error.off), albedo);
 }
 
 std::string RefusalText(const std::vector<Refusal>& refusals) {

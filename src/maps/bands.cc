@@ -6,6 +6,7 @@
 
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/progress.h"
+#include "lobefit/maps/stack/geometry.h"
 
 namespace lobefit {
 namespace {
@@ -36,12 +37,17 @@ MapRows FitBand(const Stack& stack, const MapRecipe& recipe, const FittedLights&
   MapRows rows = {band.first_row, band.rows, stack.width, {}};
   rows.values.assign(planes.size(), std::vector<float>(band.rows * stack.width));
   std::vector<float> values(stack.channels * lights.index.size()), numbers(planes.size());
+  std::vector<Vec3> directions;
   TexelFit outside;
   outside.status = kMapOutside;
   for (std::size_t t = 0; t < band.rows * stack.width; ++t) {
     TexelFit fit = outside;
     if (stack.Holds(band.first_row * stack.width + t)) {
       Gather(band, t, stack.channels, lights, stack.lights.size(), values.data());
+      if (stack.near) {
+        DirectionsAt(stack, lights.index, band.first_row * stack.width + t, &directions);
+        fitter->MoveLights(directions);
+      }
       fit = fitter->Fit(values.data(), lights.index.size(), log_alpha);
     }
     Fill(fit, recipe.rules.lobe, channels, numbers.data());

@@ -14,7 +14,7 @@ namespace lobefit {
 // The lights that are fitted, and where they stand among the stack's.
 struct FittedLights {
   std::vector<std::size_t> index;
-  std::vector<Vec3> directions;
+  std::vector<Vec3> directions;  // of near lights those at the middle of the picture
 };
 FittedLights LightsWithout(const Stack& stack, const std::vector<std::size_t>& left_out);
 

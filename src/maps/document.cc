@@ -84,7 +84,8 @@ MapsRecord ReadMapsRecord(const std::filesystem::path& document) {
   if (!json.is_object() || json.value("schema", "") != "lobefit-maps-1" || !json.contains("source")) fail();
   const nlohmann::json& source = json["source"];
   if (!source.is_object() || !source.contains("calibrated") || !source["calibrated"].is_boolean()) fail();
-  MapsRecord record = {source["calibrated"].get<bool>(), {}};
+  MapsRecord record = {source["calibrated"].get<bool>(), {}, {}};
+  if (source.contains("stack") && source["stack"].is_string()) record.stack = source["stack"].get<std::string>();
   for (const nlohmann::json& light : source.value("left_out_lights", nlohmann::json::array())) {
     if (!light.is_number_unsigned() || light.get<std::size_t>() == 0) fail();
     record.left_out.push_back(light.get<std::size_t>() - 1);

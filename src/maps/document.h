@@ -14,6 +14,7 @@ std::string MapsDocument(const Stack& stack, const MapsOptions& options, const M
 struct MapsRecord {
   bool calibrated = false;
   std::vector<std::size_t> left_out;  // from 0
+  std::string stack;                  // its name
 };
 MapsRecord ReadMapsRecord(const std::filesystem::path& document);
 

@@ -18,25 +18,10 @@ const std::vector<std::string> kKeys = {"name", "model",  "normal",      "lobe",
                                         "loss", "shadow", "share_alpha", "least_alpha"};
 const std::vector<std::string> kModels = {"lambert", "ggx", "ggx-anisotropic"};
 
-struct RecipeFile : TomlFile {
-  // Index of the word in `allowed`; 0 where the key is not there.
-  std::size_t Word(const toml::table& table, const char* key, const std::vector<std::string>& allowed) const {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return 0;
-    const std::string word = node->is_string() ? *node->value<std::string>() : "?";
-    const auto found = std::find(allowed.begin(), allowed.end(), word);
-    if (found == allowed.end()) {
-      Fail(node->source(), fmt::format("{} = '{}' is unknown{}; allowed: {}", key, Excerpt(word),
-                                       DidYouMean(word, allowed), Join(allowed)));
-    }
-    return static_cast<std::size_t>(found - allowed.begin());
-  }
-};
-
 }  // namespace
 
 MapRecipe ReadMapRecipe(const std::filesystem::path& path) {
-  const RecipeFile file = {{PrintableName(path)}};
+  const TomlFile file = {PrintableName(path)};
   const FileBytes bytes(path);
   const toml::table table = file.Parse(bytes.bytes());
   file.CheckKeys(table, kKeys);

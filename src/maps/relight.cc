@@ -35,46 +35,51 @@ Fallback MedianFallback(const Maps& maps) {
   return fallback;
 }
 
+RelitTexel RelitTexelAt(const Maps& maps, std::size_t texel, const Fallback& fallback) {
+  const auto at = [&](std::size_t plane) { return static_cast<double>(maps.rows.values[plane][texel]); };
+  const auto channels = static_cast<std::size_t>(maps.channels);
+  const std::size_t diffuse = 3, f0 = diffuse + channels, alpha = f0 + channels;  // planes.h
+  RelitTexel result;
+  MapPoint& point = result.point;
+  point.normal = {at(0), at(1), at(2)};
+  result.hidden = std::isnan(point.normal.z);
+  if (!result.hidden) point.normal = Normalized(point.normal);
+  for (std::size_t c = 0; c < channels; ++c) point.diffuse[c] = at(diffuse + c);
+  // Without a lobe by evidence all numbers of the lobe are NaN, and the status says so.
+  const bool none = (static_cast<unsigned>(at(maps.planes.size() - 1)) & kMapNoLobe) != 0;
+  if (maps.lobe == MapLobe::kNone || none) return result;
+  const bool one = maps.lobe == MapLobe::kGgx;
+  double x = at(alpha), y = one ? x : at(alpha + 1), angle = one ? 0 : at(alpha + 2) * kPi / 180;
+  if (std::isnan(x) || std::isnan(y) || std::isnan(angle)) x = y = fallback.alpha, angle = 0;
+  point.width = one ? std::array<double, 3>{std::log(x), 0, std::log(x)} : WidthsOf(x, y, angle);
+  bool known = !std::isnan(x);
+  for (std::size_t c = 0; c < channels; ++c) {
+    point.f0[c] = std::isnan(at(f0 + c)) ? fallback.f0[c] : at(f0 + c);
+    known = known && !std::isnan(point.f0[c]);
+  }
+  if (known) result.lobe = maps.lobe;
+  return result;
+}
+
 Relighting::Relighting(const Maps& maps, const std::vector<Vec3>& lights, bool schlick, const Fallback& fallback)
-    : maps_(maps), fallback_(fallback) {
+    : maps_(maps), schlick_(schlick), fallback_(fallback) {
   lights_.Resize(lights.size());
-  for (std::size_t l = 0; l < lights.size(); ++l) lights_.Set(l, lights[l], schlick);
+  MoveLights(lights);
   shape_.Resize(lights_.padded);
-  normal_ = 0, diffuse_ = 3, f0_ = diffuse_ + static_cast<std::size_t>(maps.channels);
-  alpha_ = f0_ + static_cast<std::size_t>(maps.channels);
+}
+
+void Relighting::MoveLights(const std::vector<Vec3>& lights) {
+  for (std::size_t l = 0; l < lights.size(); ++l) lights_.Set(l, lights[l], schlick_);
 }
 
 void Relighting::Texel(std::size_t texel, double* values, std::size_t stride) {
-  const auto at = [&](std::size_t plane) { return static_cast<double>(maps_.rows.values[plane][texel]); };
-  MapPoint point;
-  point.normal = {at(normal_), at(normal_ + 1), at(normal_ + 2)};
-  MapLobe lobe = maps_.lobe;
-  bool undetermined = false;
-  // Without a lobe by evidence all numbers of the lobe are NaN, and the status says so.
-  const std::size_t status = maps_.planes.size() - 1;
-  const bool none = (static_cast<unsigned>(at(status)) & kMapNoLobe) != 0;
-  if (lobe != MapLobe::kNone && !none) {
-    const bool one = lobe == MapLobe::kGgx;
-    double x = at(alpha_), y = one ? x : at(alpha_ + 1), angle = one ? 0 : at(alpha_ + 2) * kPi / 180;
-    if (std::isnan(x) || std::isnan(y) || std::isnan(angle)) x = y = fallback_.alpha, angle = 0;
-    point.width = one ? std::array<double, 3>{std::log(x), 0, std::log(x)} : WidthsOf(x, y, angle);
-    undetermined = std::isnan(x);
-    for (std::size_t c = 0; c < static_cast<std::size_t>(maps_.channels); ++c) {
-      point.f0[c] = std::isnan(at(f0_ + c)) ? fallback_.f0[c] : at(f0_ + c);
-      undetermined = undetermined || std::isnan(point.f0[c]);
-    }
-  }
-  if (none || undetermined) lobe = MapLobe::kNone;
-  const bool hidden = std::isnan(point.normal.z);
-  if (!hidden) {
-    point.normal = Normalized(point.normal);
-    EvaluateShape(lobe, point, lights_, false, &shape_);
-  }
+  const RelitTexel relit = RelitTexelAt(maps_, texel, fallback_);
+  if (!relit.hidden) EvaluateShape(relit.lobe, relit.point, lights_, false, &shape_);
   for (std::size_t c = 0; c < static_cast<std::size_t>(maps_.channels); ++c) {
     for (std::size_t l = 0; l < lights_.count; ++l) {
-      double value = hidden ? kNan : at(diffuse_ + c) * kInvPi * shape_.cosine[l];
-      if (!hidden && lobe != MapLobe::kNone) {
-        value += (point.f0[c] * (1 - lights_.k[l]) + lights_.k[l]) * shape_.specular[l];
+      double value = relit.hidden ? kNan : relit.point.diffuse[c] * kInvPi * shape_.cosine[l];
+      if (!relit.hidden && relit.lobe != MapLobe::kNone) {
+        value += (relit.point.f0[c] * (1 - lights_.k[l]) + lights_.k[l]) * shape_.specular[l];
       }
       values[c * stride + l] = value;
     }

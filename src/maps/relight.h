@@ -15,20 +15,33 @@ struct Fallback {
 // Medians of the determined ones.
 Fallback MedianFallback(const Maps& maps);
 
+// The numbers of one texel that a prediction takes.
+struct RelitTexel {
+  bool hidden = false;            // it has no normal
+  MapLobe lobe = MapLobe::kNone;  // kNone too where none is by evidence or its numbers are not known
+  // Normal and widths as in engine/model.h; diffuse is the albedo, f0 the stack's, and the width that of `fallback` where
+  // it is not determined.
+  MapPoint point;
+};
+// All planes of the part "parameters", and the status, must be read.
+RelitTexel RelitTexelAt(const Maps& maps, std::size_t texel, const Fallback& fallback);
+
 // f_r cos_theta_i of one texel after another under distant lights, as the engine defines it (engine/model.h).
 class Relighting {
  public:
-  // All planes of the part "parameters" must be read. `maps` must outlive this.
+  // `maps` as for RelitTexelAt; they must outlive this.
   Relighting(const Maps& maps, const std::vector<Vec3>& lights, bool schlick, const Fallback& fallback);
+  // Moves the lights, as many as before.
+  void MoveLights(const std::vector<Vec3>& lights);
   // values[channel stride + light]; NaN where the texel has no normal. Not for several threads at once.
   void Texel(std::size_t texel, double* values, std::size_t stride);
 
  private:
   const Maps& maps_;
+  bool schlick_;
   LightArrays lights_;
   ShapeArrays shape_;
   Fallback fallback_;
-  std::size_t normal_, diffuse_, f0_, alpha_;
 };
 
 }  // namespace lobefit

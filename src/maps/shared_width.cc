@@ -5,6 +5,7 @@
 
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/progress.h"
+#include "lobefit/maps/stack/geometry.h"
 
 namespace lobefit {
 namespace {
@@ -12,19 +13,22 @@ namespace {
 constexpr std::size_t kMostTexels = 4096, kPieces = 64;
 constexpr int kMostSteps = 12;
 
-// Values of texels on a grid, [texel][channel lights + light].
-std::vector<std::vector<float>> GridTexels(const Stack& stack, const FittedLights& lights) {
+struct GridTexel {
+  std::size_t index = 0;
+  std::vector<float> values;  // [channel lights + light]
+};
+std::vector<GridTexel> GridTexels(const Stack& stack, const FittedLights& lights) {
   std::size_t step = 1;
   while (stack.Texels() / (step * step) > kMostTexels) ++step;
-  std::vector<std::vector<float>> texels;
+  std::vector<GridTexel> texels;
   StackReader reader(stack);
   Progress progress("reading a grid of texels", stack.height);
   for (std::size_t y = step / 2; y < stack.height; y += step) {
     const StackBand band = reader.Read(y, 1);
     for (std::size_t x = step / 2; x < stack.width; x += step) {
       if (!stack.Holds(y * stack.width + x)) continue;
-      texels.emplace_back(stack.channels * lights.index.size());
-      Gather(band, x, stack.channels, lights, stack.lights.size(), texels.back().data());
+      texels.push_back({y * stack.width + x, std::vector<float>(stack.channels * lights.index.size())});
+      Gather(band, x, stack.channels, lights, stack.lights.size(), texels.back().values.data());
     }
     progress.Advance(std::min(step, stack.height - y));
   }
@@ -39,7 +43,7 @@ struct Sums {
 }  // namespace
 
 SharedWidth EstimateSharedWidth(const Stack& stack, const MapRecipe& recipe, const FittedLights& lights, int threads) {
-  const std::vector<std::vector<float>> texels = GridTexels(stack, lights);
+  const std::vector<GridTexel> texels = GridTexels(stack, lights);
   const std::size_t count = lights.index.size();
   // One sum a piece, added in their order: the same bits on any number of threads.
   const auto visit = [&](double log_alpha, std::vector<double>* widths) {
@@ -47,8 +51,13 @@ SharedWidth EstimateSharedWidth(const Stack& stack, const MapRecipe& recipe, con
     std::vector<std::vector<double>> found(kPieces);
     ParallelFor(kPieces, threads, [&](std::size_t piece) {
       TexelFitter fitter(recipe.rules, lights.directions, static_cast<int>(stack.channels));
+      std::vector<Vec3> directions;
       for (std::size_t t = piece * texels.size() / kPieces; t < (piece + 1) * texels.size() / kPieces; ++t) {
-        const TexelFit fit = fitter.Fit(texels[t].data(), count, log_alpha);
+        if (stack.near) {
+          DirectionsAt(stack, lights.index, texels[t].index, &directions);
+          fitter.MoveLights(directions);
+        }
+        const TexelFit fit = fitter.Fit(texels[t].values.data(), count, log_alpha);
         double slope, curvature;
         if (fitter.ProfileOfLastFit(&slope, &curvature)) {
           Sums& s = pieces[piece];

@@ -55,9 +55,9 @@ class SurfaceEvaluator {
     for (const SurfaceLobe& lobe : surface.lobes) {
       frames_.emplace_back(lobe);
       const bool needs_albedo = surface.energy_compensation || surface.layering == Surface::Layering::kAlbedo;
-      albedos_.push_back(
-          needs_albedo ? std::make_unique<const IsotropicAlbedo>(std::sqrt(lobe.widths.alpha_1 * lobe.widths.alpha_2))
-                       : nullptr);
+      albedos_.push_back(needs_albedo ? std::make_unique<const IsotropicAlbedo>(
+                                            std::sqrt(lobe.widths.alpha_1 * lobe.widths.alpha_2), surface.albedo_side)
+                                      : nullptr);
     }
   }
 
@@ -146,15 +146,15 @@ BrdfFunction SurfaceBrdf(const Surface& surface) {
              const Vec3& wi, const Vec3& wo, double* values) { evaluator->Evaluate(wi, wo, values); };
 }
 
-IsotropicAlbedo::IsotropicAlbedo(double alpha) {
-  constexpr int kNodes = 65, kSide = 64;  // 0.1 % of the albedo, 20 ms
+IsotropicAlbedo::IsotropicAlbedo(double alpha, int side) {
+  constexpr int kNodes = 65;
   for (int node = 0; node < kNodes; ++node) {
     const double mu = std::max(1e-3, static_cast<double>(node) / (kNodes - 1));
     const Vec3 v = {std::sqrt(1 - mu * mu), 0, mu};
     const EllipsoidVndfSampler sampler({alpha, alpha, 0, 0, 0}, v);
     double a = 0, b = 0;
-    for (int k = 0; k < kSide * kSide; ++k) {
-      const Vec3 m = sampler.Sample((k % kSide + 0.5) / kSide, (k / kSide + 0.5) / kSide);
+    for (int k = 0; k < side * side; ++k) {
+      const Vec3 m = sampler.Sample((k % side + 0.5) / side, (k / side + 0.5) / side);
       const Vec3 l = Reflect(v, m);
       if (!(l.z > 0)) continue;
       // G2 / G1 of the viewer.
@@ -163,8 +163,8 @@ IsotropicAlbedo::IsotropicAlbedo(double alpha) {
       a += weight * (1 - schlick);
       b += weight * schlick;
     }
-    a_.push_back(a / (kSide * kSide));
-    b_.push_back(b / (kSide * kSide));
+    a_.push_back(a / (side * side));
+    b_.push_back(b / (side * side));
   }
 }
 

@@ -51,6 +51,7 @@ struct Surface {
   SurfaceMasking masking = SurfaceMasking::kHeightCorrelated;
   // Each lobe times 1 + F (1 - E) / E, with E the albedo of an isotropic lobe of the mean alpha (MaterialX' GLSL).
   bool energy_compensation = false;
+  int albedo_side = 64;          // of the quadratures of E, IsotropicAlbedo's
   Spectrum diffuse = {0, 0, 0};  // albedo, any mixing weight included; as long as every other Spectrum of the surface
   Vec3 diffuse_normal = {0, 0, 1};
   // Energy-preserving Oren-Nayar, as MaterialX' GLSL evaluates it: directions more than 90 degrees apart count as 90.
@@ -67,10 +68,11 @@ struct Surface {
 BrdfFunction SurfaceBrdf(const Surface& surface);
 
 // Albedo of an isotropic, height-correlated GGX lobe whose Fresnel term is f0 + (f90 - f0) (1 - c)^5: f0 a(mu) + f90
-// b(mu), by quadrature over the visible normals, tabulated over mu.
+// b(mu), by quadrature over side x side visible normals, tabulated over mu. Side 64: 0.1 % of the albedo, 20 ms; 16: 1 %,
+// 1 ms.
 class IsotropicAlbedo {
  public:
-  explicit IsotropicAlbedo(double alpha);
+  explicit IsotropicAlbedo(double alpha, int side = 64);
   double operator()(double mu, double f0, double f90) const;
 
  private:

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/maps/output/previews.h"
+#include "lobefit/maps/output/pixels.h"
 #include "lobefit/maps/stack/reader.h"
 
 namespace lobefit {
@@ -161,6 +161,111 @@ TEST_F(StackReading, MaskOfAnotherSizeOrEmpty) {
   ExpectRefused("the mask leaves no texel");
 }
 
+TEST_F(StackReading, DarkAndWhiteFieldsAreTakenOut) {
+  // Pixel of image i: dark + white_i (i + 1) / 10, where the board of albedo 0.8 reflects white_i.
+  std::string lp = "4\n";
+  for (int i = 0; i < 4; ++i) {
+    std::vector<std::uint16_t> image, board;
+    for (int p = 0; p < 6; ++p) {
+      const int white = 20000 + 1000 * i + 500 * p;
+      board.push_back(static_cast<std::uint16_t>(1000 + white));
+      image.push_back(static_cast<std::uint16_t>(1000 + white * (i + 1) / 10));
+    }
+    Write("im" + std::to_string(i) + ".png", EncodePixels(image, 3, 2, 1, 16));
+    Write("w" + std::to_string(i) + ".png", EncodePixels(board, 3, 2, 1, 16));
+    lp += "im" + std::to_string(i) + ".png 0.6 0 0.8\n";
+  }
+  Write("dark.png", EncodePixels(std::vector<std::uint16_t>(6, 1000), 3, 2, 1, 16));
+  Write("a.lp", lp);
+  const std::string lights = "[lights]\nfile = \"a.lp\"\n";
+  Write("stack.toml", "dark = \"dark.png\"\nwhite = \"w*.png\"\nwhite_albedo = 0.8\nencoding = \"linear\"\n" + lights);
+  const Stack stack = OpenStack(folder_, {});
+  EXPECT_TRUE(stack.calibrated);
+  StackReader reader(stack);
+  const StackBand band = reader.Read(1, 1);
+  for (std::size_t x = 0; x < 3; ++x) {
+    for (std::size_t l = 0; l < 4; ++l) {
+      EXPECT_NEAR(band.values[x * 4 + l], 0.8 * kInvPi * 0.8 * static_cast<double>(l + 1) / 10, 1e-5);
+    }
+  }
+  const std::string digest = DigestOf(stack);
+  Write("dark.png", EncodePixels(std::vector<std::uint16_t>(6, 900), 3, 2, 1, 16));
+  EXPECT_NE(DigestOf(OpenStack(folder_, {})), digest);
+  Write("dark.png", EncodePixels(std::vector<std::uint16_t>(4, 900), 2, 2, 1, 16));
+  ExpectRefused("dark.png: 2 x 2 pixels, 1 channels");
+  Write("stack.toml", "white = \"w0.png\"\n" + lights);
+  ExpectRefused("stack.toml:1: 1 photographs of the white board, but 4 images");
+  Write("stack.toml", "white = \"w*.png\"\n" + lights + "intensity = \"i.txt\"\n");
+  Write("i.txt", "1 1 1\n1 1 1\n1 1 1\n1 1 1\n");
+  ExpectRefused("white and the lights' intensity say the same");
+  Write("stack.toml", "white_albedo = 0.5\n" + lights);
+  ExpectRefused("white_albedo needs white");
+}
+
+TEST_F(StackReading, DomeOfRelightLab) {
+  WriteImages(4, 16);
+  const auto dome = [&](const std::string& more) { Write("d.dome", "{\"label\": \"x\", " + more + "}"); };
+  const auto points = [](double z) {
+    std::string list = "[";
+    for (int i = 0; i < 4; ++i) {
+      list += std::string(i == 0 ? "" : ", ") + "{\"x\": 3, \"y\": " + std::to_string(i) +
+              ", \"z\": " + std::to_string(z) + "}";
+    }
+    return list + "]";
+  };
+  dome("\"lightConfiguration\": \"directional\", \"directions\": " + points(4) + ", \"ledAdjust\": [{\"r\": 1}]");
+  const Stack distant = OpenStack(folder_, {});
+  EXPECT_EQ(distant.layout, "RelightLab dome");
+  EXPECT_EQ(distant.images.size(), 4U);
+  EXPECT_NEAR(distant.lights[0].direction.z, 0.8, 1e-15);
+  EXPECT_FALSE(distant.near.has_value());
+  EXPECT_THAT(distant.remarks[0], HasSubstr("ledAdjust of the dome is not used"));
+  dome("\"imageWidth\": 12, \"lightConfiguration\": \"lights3d\", \"positions3d\": " + points(40));
+  const Stack near = OpenStack(folder_ / "d.dome", {});
+  ASSERT_TRUE(near.near.has_value());
+  EXPECT_EQ(near.near->width_mm, 12);
+  EXPECT_EQ(near.lights[2].place.z, 40);
+  dome("\"lightConfiguration\": \"spherical\", \"positionsSphere\": " + points(40));
+  ExpectRefused("need imageWidth");
+  dome("\"imageWidth\": 12, \"lightConfiguration\": \"lights3d\", \"positions3d\": " + points(-40));
+  ExpectRefused("light 1 at z = -40 mm is not in front of the picture");
+  dome("\"lightConfiguration\": \"direction\", \"directions\": []");
+  ExpectRefused("lightConfiguration 'direction' is unknown");
+  dome("\"directions\": []");
+  ExpectRefused("'directions' holds no lights");
+  dome("\"directions\": [{\"x\": 1, \"y\": \"2\", \"z\": 3}]");
+  ExpectRefused("directions[0] has no number 'y'");
+  dome("\"directions\": [{\"x\": 0, \"y\": 0, \"z\": 0}]");
+  ExpectRefused("d.dome, directions[0]: (0, 0, 0) is no direction");
+  Write("d.dome", "{");
+  ExpectRefused("is no JSON object, as a dome of RelightLab is");
+}
+
+TEST_F(StackReading, NamesOfAngles) {
+  const std::vector<std::uint16_t> pixels(6, 1000);
+  for (const char* name : {"tl000 pl000 tv000 pv000.png", "tl060_pl090_tv000_pv000.png", "tl060_pl180_tv000_pv000.png",
+                           "tl015 pl022.5 tv000 pv000.png", "tl015 pl000 tv030 pv000.png", "note.png"}) {
+    Write(name, EncodePixels(pixels, 3, 2, 1, 16));
+  }
+  const Stack stack = OpenStack(folder_, {});
+  ASSERT_EQ(stack.images.size(), 4U);
+  EXPECT_THAT(stack.remarks, testing::Contains(HasSubstr("1 photographs of slanted views are left out")));
+  EXPECT_THAT(stack.remarks, testing::Contains(HasSubstr("1 images whose names hold no angles")));
+  for (std::size_t l = 0; l < 4; ++l) {
+    const std::string name = stack.images[l].filename().string();
+    const Vec3& w = stack.lights[l].direction;
+    if (name.rfind("tl060_pl090", 0) == 0) {
+      EXPECT_NEAR(w.y, std::sin(kPi / 3), 1e-12);
+      EXPECT_NEAR(w.z, 0.5, 1e-12);
+    }
+    if (name.rfind("tl015 pl022.5", 0) == 0) {
+      EXPECT_NEAR(std::atan2(w.y, w.x), 22.5 * kPi / 180, 1e-12);
+    }
+  }
+  Write("tl095 pl000 tv000 pv000.png", EncodePixels(pixels, 3, 2, 1, 16));
+  ExpectRefused("polar angles 95 and 0 are not within 0 and 90 degrees");
+}
+
 TEST_F(StackReading, ManifestErrorsNameTheLine) {
   WriteImages(4, 16);
   WriteLights(4);
@@ -171,7 +276,16 @@ TEST_F(StackReading, ManifestErrorsNameTheLine) {
   Write("stack.toml", "saturation = 7\n[lights]\nfile = \"a.lp\"\n");
   ExpectRefused("stack.toml:1: 'saturation' must be a number from 0.1 to 1");
   Write("stack.toml", "[lights]\nfile = \"a.lp\"\nkind = \"near\"\n");
-  ExpectRefused("stack.toml:3: lights of kind 'near' are not understood");
+  ExpectRefused("stack.toml:3: kind = 'near' is unknown; allowed: distant, position");
+  Write("stack.toml", "[lights]\nfile = \"a.lp\"\nkind = \"position\"\n");
+  ExpectRefused("need [plane] with width_mm, the width of the picture");
+  Write("stack.toml", "[lights]\nfile = \"a.lp\"\nkind = \"position\"\n[plane]\nwidth_mm = 0\n");
+  ExpectRefused("stack.toml:5: 'width_mm' must be a number from 0.001");
+  Write("stack.toml", "[lights]\nfile = \"a.lp\"\nexponent = 1\n");
+  ExpectRefused("falloff and exponent are for kind = \"position\"");
+  Write("stack.toml", "[lights]\nfile = \"a.lp\"\nkind = \"position\"\n[plane]\nwidth_mm = 9\n");
+  WriteLights(4, -5);
+  ExpectRefused("light 1 at z = -5 mm is not in front of the picture");
   Write("stack.toml", "images = [\n");
   ExpectRefused("stack.toml:");
 }

@@ -108,6 +108,30 @@ TEST_F(MapsVerb, KilledAndRunAgainGivesTheSameBytes) {
   EXPECT_EQ(Read("third/s.maps.exr"), Read("whole/s.maps.exr"));
 }
 
+TEST_F(MapsVerb, MapsAreExportedAndReported) {
+  ASSERT_EQ(
+      Shell("lobefit synth hills --stack --size 16 --lights 24 --light-distance 3 --out s && lobefit maps s --out o "
+            "--leave-out 4")
+          .exit_code,
+      0);
+  EXPECT_THAT(Shell("lobefit info s").out, HasSubstr("near: 300 mm from the middle of a picture of 100 mm"));
+  const ProgramResult done =
+      Shell("lobefit export o/s.maps.exr --to merl,gltf,mitsuba --out e --map-path e --normal-y down");
+  EXPECT_EQ(done.exit_code, 3);
+  EXPECT_THAT(done.err, HasSubstr("merl cannot hold this material: it takes one material"));
+  EXPECT_THAT(done.out, HasSubstr("\ngltf           copied"));
+  EXPECT_THAT(Read("e/s.mitsuba.xml"), HasSubstr("value=\"e/s_normal.png\""));
+  EXPECT_FALSE(Read("e/s_normal_down.png").empty());
+  const nlohmann::json record = nlohmann::json::parse(Read("e/s.export.json"));
+  EXPECT_EQ(record["targets"].size(), 2U);
+  EXPECT_TRUE(record["targets"][0]["relative_error"]["albedo"].is_null());
+  const ProgramResult report = Shell("lobefit report o/s.maps.exr s --format png,html --out r");
+  EXPECT_EQ(report.exit_code, 2);  // neither a folder nor a picture
+  ASSERT_EQ(Shell("mkdir r && lobefit report o/s.maps.exr s --format png,html --out r").exit_code, 0);
+  EXPECT_THAT(Read("r/s.maps.report.html"), HasSubstr("How lights are met"));
+  EXPECT_EQ(Shell("lobefit report o/s.maps.exr s --format exr").exit_code, 2);
+}
+
 TEST_F(MapsVerb, BadInputEndsWithItsCodeAndCure) {
   ASSERT_EQ(Shell("lobefit synth hills --stack --size 8 --lights 12 --out s").exit_code, 0);
   const auto refused = [&](const std::string& command, int code, const std::string& words) {
@@ -116,7 +140,7 @@ TEST_F(MapsVerb, BadInputEndsWithItsCodeAndCure) {
     EXPECT_THAT(result.err, HasSubstr(words)) << command;
   };
   refused("lobefit maps nowhere", 3, "nowhere: is not there");
-  refused("mkdir empty && lobefit maps empty", 3, "a stack.toml, DiLiGenT's filenames.txt or a light file");
+  refused("mkdir empty && lobefit maps empty", 3, "a stack.toml, DiLiGenT's filenames.txt, a light file (.lp, .dome)");
   refused("lobefit maps s --recipe ggx-map", 3, "did you mean 'ggx-maps'?");
   refused("lobefit maps s --rows 5:3", 2, "A:B with 0 <= A < B <= 8 is expected");
   refused("lobefit maps s --leave-out 13", 2, "numbers of lights from 1 to 12");
@@ -125,6 +149,9 @@ TEST_F(MapsVerb, BadInputEndsWithItsCodeAndCure) {
   refused("printf 'loss = 0.05\\nmodle = 1\\n' > e.toml; lobefit maps s --recipe e.toml", 3,
           "e.toml:2: unknown key 'modle' (did you mean 'model'?)");
   refused("lobefit maps s --out s --name 001 && lobefit maps s/lights.lp --out /proc/nothing", 3, "cannot be made");
+  refused("lobefit export s.maps.exr --to gltf", 3, "s.maps.json: cannot be opened");
+  refused("lobefit export s.maps.exr --to gltf --copy", 2, "--refit and --copy are for one material");
+  refused("lobefit export a.material.json --to gltf --normal-y down", 2, "--white and --normal-y are for maps");
   refused("rm s/003.png; lobefit maps s", 3, "003.png: cannot be opened");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.maps.exr"));
 }

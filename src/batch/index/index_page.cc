@@ -173,9 +173,6 @@ Json DataOf(const ResultTable& table, const std::filesystem::path& out, const In
           {"pictures", Pictures(rows, out, options.most_pictures)}};
 }
 
-// As a page's policy names what it lets run.
-std::string PolicyHash(std::string_view text) { return "'sha256-" + Base64(Sha256(text)) + "'"; }
-
 }  // namespace
 
 std::string IndexPage(const ResultTable& table, const std::filesystem::path& out, const IndexOptions& options) {
@@ -184,9 +181,9 @@ std::string IndexPage(const ResultTable& table, const std::filesystem::path& out
   for (std::size_t at = data.find('<'); at != std::string::npos; at = data.find('<', at + 6))
     data.replace(at, 1, "\\u003c");
   // Only the page's own script and style, and no connection to anywhere.
-  const std::string policy = Join(
-      {"default-src 'none'; img-src data:; style-src ", PolicyHash(kIndexCss), "; script-src ", PolicyHash(kIndexJs)},
-      "");
+  const std::string policy = Join({"default-src 'none'; img-src data:; style-src '", PolicyHash(kIndexCss),
+                                   "'; script-src '", PolicyHash(kIndexJs), "'"},
+                                  "");
   return FillTemplate(kIndexHtml,
                       {{"policy", policy},
                        {"title", MarkupText(options.title)},

@@ -47,6 +47,16 @@ std::array<double, 4> CubePoint(std::size_t k) {
 // Uniform over the solid angle to 88 degrees.
 Vec3 UniformDirection(double u, double v) { return FromSpherical(std::acos(1 - u * (1 - kLeastCos)), 2 * kPi * v); }
 
+double Score(const ExportError& error) {
+  const auto capped = [](double part) { return std::min(part, 1.0); };
+  const auto mean = [&](const ErrorLevels& levels) {
+    return (capped(levels.median) + capped(levels.percentile_90)) / 2;
+  };
+  return mean(error.lobe) + mean(error.off) + 2 * capped(error.albedo);
+}
+
+}  // namespace
+
 ErrorLevels LevelsOf(std::vector<double> differences) {
   ErrorLevels levels;
   levels.compared = differences.size();
@@ -57,16 +67,6 @@ ErrorLevels LevelsOf(std::vector<double> differences) {
   levels.maximum = differences.back();
   return levels;
 }
-
-double Score(const ExportError& error) {
-  const auto capped = [](double part) { return std::min(part, 1.0); };
-  const auto mean = [&](const ErrorLevels& levels) {
-    return (capped(levels.median) + capped(levels.percentile_90)) / 2;
-  };
-  return mean(error.lobe) + mean(error.off) + 2 * capped(error.albedo);
-}
-
-}  // namespace
 
 bool IsBetter(const ExportError& a, const ExportError& b) { return Score(a) < Score(b); }
 

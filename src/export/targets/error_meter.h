@@ -17,13 +17,14 @@ struct ErrorLevels {
   double median = 0, percentile_90 = 0, maximum = 0;
   std::size_t compared = 0;  // values
 };
+ErrorLevels LevelsOf(std::vector<double> differences);
 
 struct ExportError {
   ErrorLevels uniform;  // pairs of directions uniform over both hemispheres
   // Half vectors among those nearest to a lobe's centre that hold 90 % of its normals; and the pairs of `uniform` that
   // are not. Without a lobe nothing is compared in it.
   ErrorLevels lobe, off;
-  double albedo = 0;  // the largest relative difference of a directional albedo
+  double albedo = 0;  // the largest relative difference of a directional albedo; NaN: not asked
 };
 
 // f_r below this counts as this where an error is related to f_r: the diffuse part of an albedo of 1e-4, below the

@@ -12,6 +12,8 @@ const char* NameOf(Feature feature) {
       return "rotation";
     case Feature::kTilt:
       return "tilt";
+    case Feature::kNormal:
+      return "normal";
     case Feature::kMasking:
       return "masking";
     case Feature::kFresnel:

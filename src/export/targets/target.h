@@ -13,11 +13,12 @@
 
 namespace lobefit {
 
-// What a fit consists of; the last three of a table of lobes.
+// What a fit consists of; the normal of maps alone, the last three of a table of lobes.
 enum class Feature {
   kShape,
   kRotation,
   kTilt,
+  kNormal,
   kMasking,
   kFresnel,
   kDiffuse,

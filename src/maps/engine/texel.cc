@@ -52,10 +52,14 @@ void Axes(const MapPoint& point, const MapErrors& errors, TexelFit* fit) {
 TexelFitter::TexelFitter(const MapRules& rules, const std::vector<Vec3>& lights, int channels)
     : rules_(rules), channels_(channels) {
   lights_.Resize(lights.size());
-  for (std::size_t l = 0; l < lights.size(); ++l) lights_.Set(l, lights[l], rules.schlick);
+  MoveLights(lights);
   data_.Resize(lights_.padded);
   objective_.Resize(lights_.padded);
   mean_.resize(lights_.padded);
+}
+
+void TexelFitter::MoveLights(const std::vector<Vec3>& lights) {
+  for (std::size_t l = 0; l < lights.size(); ++l) lights_.Set(l, lights[l], rules_.schlick);
 }
 
 bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit) {

@@ -1,7 +1,6 @@
 // Pictures of single maps for programs that read PNG: 16-bit normals, and what else people look at.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,9 +18,5 @@ enum class NormalY { kUp, kDown };
 // picture are in memory at a time. Returns what was written.
 std::vector<std::filesystem::path> WritePreviews(const std::filesystem::path& maps, bool calibrated, NormalY normal_y,
                                                  const std::filesystem::path& stem);
-
-// A PNG of 8 or 16 bits, 1 or 3 channels, rows from the top.
-std::string EncodePixels(const std::vector<std::uint16_t>& pixels, std::size_t width, std::size_t height, int channels,
-                         int bits);
 
 }  // namespace lobefit

@@ -5,25 +5,51 @@
 
 #include "lobefit/base/progress.h"
 #include "lobefit/maps/bands.h"
+#include "lobefit/maps/stack/geometry.h"
 #include "lobefit/maps/stack/reader.h"
 
 namespace lobefit {
 namespace {
 
-std::vector<Vec3> DirectionsOf(const Stack& stack) {
-  std::vector<Vec3> directions;
-  for (const StackLight& light : stack.lights) directions.push_back(light.direction);
-  return directions;
-}
+// Lights of a stack as a texel sees them.
+class RelitStack {
+ public:
+  RelitStack(const Maps& maps, const Stack& stack, const Fallback& fallback)
+      : stack_(stack), relighting_(maps, DirectionsOf(stack), stack.calibrated, fallback) {
+    for (std::size_t l = 0; l < stack.lights.size(); ++l) all_.push_back(l);
+  }
+  void Texel(std::size_t texel, double* values, std::size_t stride) {
+    if (stack_.near) {
+      DirectionsAt(stack_, all_, texel, &directions_);
+      relighting_.MoveLights(directions_);
+    }
+    relighting_.Texel(texel, values, stride);
+  }
+
+ private:
+  static std::vector<Vec3> DirectionsOf(const Stack& stack) {
+    std::vector<Vec3> directions;
+    for (const StackLight& light : stack.lights) directions.push_back(light.direction);
+    return directions;
+  }
+
+  const Stack& stack_;
+  Relighting relighting_;
+  std::vector<std::size_t> all_;
+  std::vector<Vec3> directions_;
+};
 
 }  // namespace
 
-std::vector<RelitLight> JudgeLights(const Maps& maps, const Stack& stack, const std::vector<std::size_t>& left_out,
-                                    const Fallback& fallback) {
+Judgement JudgeLights(const Maps& maps, const Stack& stack, const std::vector<std::size_t>& left_out,
+                      const Fallback& fallback) {
   const std::size_t lights = stack.lights.size(), channels = stack.channels;
-  Relighting relighting(maps, DirectionsOf(stack), stack.calibrated, fallback);
+  RelitStack relighting(maps, stack, fallback);
   std::vector<double> squares(lights), counts(lights), fit(channels * lights);
   std::vector<float> bright;
+  const FittedLights fitted = LightsWithout(stack, left_out);
+  DoubtMeter doubts(fitted.directions, stack.calibrated, maps.channels);
+  std::vector<double> sums(fitted.index.size());
   StackReader reader(stack);
   Progress progress("relighting", stack.height);
   const std::size_t rows = RowsOfBand(stack);
@@ -44,6 +70,17 @@ std::vector<RelitLight> JudgeLights(const Maps& maps, const Stack& stack, const 
           if ((texel * 7 + l) % 61 == 0) bright.push_back(value);
         }
       }
+      for (std::size_t k = 0; k < fitted.index.size(); ++k) {
+        sums[k] = 0;
+        for (std::size_t c = 0; c < channels; ++c) {
+          sums[k] += static_cast<double>(band.values[(t * channels + c) * lights + fitted.index[k]]);
+        }
+      }
+      const double width = static_cast<double>(stack.width);
+      const double x = (static_cast<double>(texel % stack.width) + 0.5) / width - 0.5;
+      const double y =
+          (0.5 * static_cast<double>(stack.height) - static_cast<double>(texel / stack.width) - 0.5) / width;
+      doubts.Add(sums, RelitTexelAt(maps, texel, fallback), x, y);
     }
     progress.Advance(band.rows);
   }
@@ -53,18 +90,22 @@ std::vector<RelitLight> JudgeLights(const Maps& maps, const Stack& stack, const 
     std::nth_element(bright.begin(), at, bright.end());
     peak = static_cast<double>(*at);
   }
-  std::vector<RelitLight> judged;
+  Judgement judgement;
+  judgement.doubts = doubts.Result();
+  // Gathered with distant lights.
+  if (stack.near) judgement.doubts = {};
   for (std::size_t l = 0; l < lights; ++l) {
-    const bool fitted = std::find(left_out.begin(), left_out.end(), l) == left_out.end();
-    judged.push_back({l, fitted, 10 * std::log10(peak * peak * counts[l] / squares[l])});
+    const bool is_fitted = std::find(left_out.begin(), left_out.end(), l) == left_out.end();
+    judgement.lights.push_back({l, is_fitted, 10 * std::log10(peak * peak * counts[l] / squares[l])});
   }
-  return judged;
+  return judgement;
 }
 
 RelitPair Relit(const Maps& maps, const Stack& stack, std::size_t light, const Fallback& fallback) {
   Stack one = stack;
   one.images = {stack.images[light]}, one.lights = {stack.lights[light]};
-  Relighting relighting(maps, DirectionsOf(one), stack.calibrated, fallback);
+  if (!stack.white.empty()) one.white = {stack.white[light]};
+  RelitStack relighting(maps, one, fallback);
   StackReader reader(one);
   RelitPair pair;
   pair.photograph = reader.Read(0, one.height).values;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lobefit/maps/relight.h"
+#include "lobefit/maps/report/doubts.h"
 #include "lobefit/maps/stack/stack.h"
 
 namespace lobefit {
@@ -16,9 +17,14 @@ struct RelitLight {
   double psnr = kNan;
 };
 
-// Of each light. Reads the stack once, in bands.
-std::vector<RelitLight> JudgeLights(const Maps& maps, const Stack& stack, const std::vector<std::size_t>& left_out,
-                                    const Fallback& fallback);
+// Of each light, and what the fitted lights say of the stack (nothing where its lights are near). Reads the
+// stack once, in bands.
+struct Judgement {
+  std::vector<RelitLight> lights;
+  StackDoubts doubts;
+};
+Judgement JudgeLights(const Maps& maps, const Stack& stack, const std::vector<std::size_t>& left_out,
+                      const Fallback& fallback);
 
 // One photograph and the fit under its light, [texel channels + channel]; NaN outside.
 struct RelitPair {

@@ -46,6 +46,18 @@ std::vector<std::vector<double>> ReadTable(const std::filesystem::path& file, st
   return rows;
 }
 
+void SetNear(NearLights near, const std::string& name, Stack* stack) {
+  for (std::size_t l = 0; l < stack->lights.size(); ++l) {
+    const Vec3& place = stack->lights[l].place;
+    if (!(place.z > 0)) {
+      throw InputError(fmt::format("{}: light {} at z = {} mm is not in front of the picture, whose plane is z = 0",
+                                   name, l + 1, place.z));
+    }
+    near.reference_mm += Norm(place) / static_cast<double>(stack->lights.size());
+  }
+  stack->near = near;
+}
+
 Vec3 LightDirection(double x, double y, double z, const std::string& place) {
   const Vec3 w = {x, y, z};
   const double length = Norm(w);

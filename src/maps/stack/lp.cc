@@ -47,8 +47,9 @@ StackFiles ReadLightFile(const std::filesystem::path& file) {
     double w[3];
     if (!SplitLight(line, &name, w)) fail(fmt::format("'{}' is not FILE x y z", Excerpt(line)));
     stack.images.push_back(file.parent_path() / name);
-    stack.lights.push_back(
-        {LightDirection(w[0], w[1], w[2], fmt::format("{}:{}", PrintableName(file), lines.line_number())), {1, 1, 1}});
+    const Vec3 direction =
+        LightDirection(w[0], w[1], w[2], fmt::format("{}:{}", PrintableName(file), lines.line_number()));
+    stack.lights.push_back({direction, {1, 1, 1}, {w[0], w[1], w[2]}});
   }
   if (stack.lights.size() != static_cast<std::size_t>(*count)) {
     throw InputError(fmt::format("{}: the first line promises {} lights, {} follow; correct the one or the other",

@@ -24,7 +24,7 @@ struct Manifest : TomlFile {
     return *node->value<std::string>();
   }
   // The files of a pattern with one star in its last part, sorted by name.
-  std::vector<std::filesystem::path> Matching(const std::string& pattern) const {
+  std::vector<std::filesystem::path> Matching(const std::string& pattern, const char* key) const {
     const std::filesystem::path full = folder / pattern;
     const std::string last = full.filename().string();
     const std::size_t star = last.find('*');
@@ -40,10 +40,29 @@ struct Manifest : TomlFile {
       }
     }
     std::sort(found.begin(), found.end());
-    if (found.empty()) throw InputError(fmt::format("{}: no file matches images = '{}'", name, Excerpt(pattern)));
+    if (found.empty()) throw InputError(fmt::format("{}: no file matches {} = '{}'", name, key, Excerpt(pattern)));
     return found;
   }
 };
+
+// A board says all that intensities say: pixels become absolute.
+void ReadWhite(const Manifest& manifest, const toml::table& table, Stack* stack) {
+  const toml::node* node = table.get("white");
+  if (node == nullptr) {
+    if (table.contains("white_albedo")) throw InputError(manifest.name + ": white_albedo needs white = \"...\"");
+    return;
+  }
+  stack->white = manifest.Matching(manifest.Text(table, "white"), "white");
+  stack->white_albedo = manifest.Number(table, "white_albedo", 1, 0.01, 1.5);
+  stack->calibrated = true;
+  const toml::table* lights = table["lights"].as_table();
+  if (lights != nullptr && lights->contains("intensity")) {
+    manifest.Fail(node->source(), "white and the lights' intensity say the same; leave one of them out");
+  }
+  if (stack->white.size() == stack->images.size()) return;
+  manifest.Fail(node->source(), fmt::format("{} photographs of the white board, but {} images; one a light is expected",
+                                            stack->white.size(), stack->images.size()));
+}
 
 void ReadImages(const Manifest& manifest, const toml::table& table, Stack* stack) {
   const toml::node* node = table.get("images");
@@ -55,18 +74,29 @@ void ReadImages(const Manifest& manifest, const toml::table& table, Stack* stack
     }
     return;
   }
-  stack->images = manifest.Matching(manifest.Text(table, "images"));
+  stack->images = manifest.Matching(manifest.Text(table, "images"), "images");
+}
+
+// The positions that the file of lights gave, and the scale of the picture.
+void ReadNear(const Manifest& manifest, const toml::table& table, const toml::table& lights, Stack* stack) {
+  const toml::table* plane = table["plane"].as_table();
+  if (plane == nullptr || !plane->contains("width_mm")) {
+    throw InputError(manifest.name +
+                     ": lights of kind \"position\" need [plane] with width_mm, the width of the picture");
+  }
+  manifest.CheckKeys(*plane, {"width_mm"});
+  NearLights near;
+  near.width_mm = manifest.Number(*plane, "width_mm", 0, 1e-3, 1e6);
+  near.inverse_square = manifest.Word(lights, "falloff", {"inverse-square", "none"}) == 0;
+  near.exponent = manifest.Number(lights, "exponent", 0, 0, 100);
+  SetNear(near, manifest.name, stack);
 }
 
 void ReadLights(const Manifest& manifest, const toml::table& table, Stack* stack) {
   const toml::table* lights = table["lights"].as_table();
   if (lights == nullptr) throw InputError(manifest.name + ": a table [lights] with file = \"...\" is needed");
-  manifest.CheckKeys(*lights, {"file", "intensity", "kind"});
-  const std::string kind = manifest.Text(*lights, "kind");
-  if (!kind.empty() && kind != "distant") {
-    manifest.Fail(lights->get("kind")->source(),
-                  fmt::format("lights of kind '{}' are not understood; allowed: distant", Excerpt(kind)));
-  }
+  manifest.CheckKeys(*lights, {"file", "intensity", "kind", "falloff", "exponent"});
+  const bool near = manifest.Word(*lights, "kind", {"distant", "position"}) == 1;
   const std::string file = manifest.Text(*lights, "file");
   if (file.empty()) throw InputError(manifest.name + ": [lights] needs file = \"...\": a .lp, or x y z a line");
   const std::filesystem::path path = manifest.folder / file;
@@ -77,8 +107,13 @@ void ReadLights(const Manifest& manifest, const toml::table& table, Stack* stack
   } else {
     for (const std::vector<double>& row : ReadTable(path, 3)) {
       const std::string place = fmt::format("{}, light {}", PrintableName(path), stack->lights.size() + 1);
-      stack->lights.push_back({LightDirection(row[0], row[1], row[2], place), {1, 1, 1}});
+      stack->lights.push_back({LightDirection(row[0], row[1], row[2], place), {1, 1, 1}, {row[0], row[1], row[2]}});
     }
+  }
+  if (near) {
+    ReadNear(manifest, table, *lights, stack);
+  } else if (lights->contains("falloff") || lights->contains("exponent")) {
+    throw InputError(manifest.name + ": [lights] falloff and exponent are for kind = \"position\"");
   }
   const std::string intensity = manifest.Text(*lights, "intensity");
   if (intensity.empty()) return;
@@ -104,7 +139,8 @@ StackFiles ReadManifest(const std::filesystem::path& file) {
   const Manifest manifest = {{PrintableName(file)}, file.parent_path()};
   const FileBytes bytes(file);
   const toml::table table = manifest.Parse(bytes.bytes());
-  manifest.CheckKeys(table, {"images", "mask", "encoding", "saturation", "black", "calibrated", "lights"});
+  manifest.CheckKeys(table, {"images", "mask", "encoding", "saturation", "black", "calibrated", "lights", "plane",
+                             "dark", "white", "white_albedo"});
   StackFiles files;
   Stack& stack = files.stack;
   stack.layout = "stack.toml";
@@ -119,6 +155,9 @@ StackFiles ReadManifest(const std::filesystem::path& file) {
     stack.calibrated = *node->value<bool>();
   }
   if (!mask.empty()) files.mask = manifest.folder / mask;
+  const std::string dark = manifest.Text(table, "dark");
+  if (!dark.empty()) stack.dark = manifest.folder / dark;
+  ReadWhite(manifest, table, &stack);
   return files;
 }
 

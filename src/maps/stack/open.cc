@@ -17,26 +17,31 @@ using Path = std::filesystem::path;
 
 constexpr std::size_t kFewestLights = 4, kMostLights = 4096;
 
+bool IsLightFile(const Path& path) { return path.extension() == ".lp" || path.extension() == ".dome"; }
+
 StackFiles ReadLayout(const Path& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw InputError(PrintableName(path) + ": is not there");
   if (!std::filesystem::is_directory(path, error)) {
+    if (path.extension() == ".dome") return ReadDome(path);
     return path.extension() == ".toml" ? ReadManifest(path) : ReadLightFile(path);
   }
   if (std::filesystem::exists(path / "stack.toml", error)) return ReadManifest(path / "stack.toml");
   if (std::filesystem::exists(path / "filenames.txt", error)) return ReadDiligent(path);
   std::vector<Path> light_files;
   for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
-    if (entry.path().extension() == ".lp") light_files.push_back(entry.path());
+    if (IsLightFile(entry.path())) light_files.push_back(entry.path());
   }
-  if (light_files.size() == 1) return ReadLightFile(light_files[0]);
+  if (light_files.size() == 1) return ReadLayout(light_files[0]);
   if (light_files.size() > 1) {
-    throw InputError(fmt::format("{}: {} light files (.lp) are in this folder; name the one that is meant",
+    throw InputError(fmt::format("{}: {} light files (.lp, .dome) are in this folder; name the one that is meant",
                                  PrintableName(path), light_files.size()));
   }
-  throw InputError(PrintableName(path) +
-                   ": no image stack: a stack.toml, DiLiGenT's filenames.txt or a light file (.lp) is looked for in "
-                   "the folder");
+  if (HasAngleNames(path)) return ReadAngleNames(path);
+  throw InputError(
+      PrintableName(path) +
+      ": no image stack: a stack.toml, DiLiGenT's filenames.txt, a light file (.lp, .dome) or images named "
+      "by angles (tl045 pl090 tv000 pv000.png) are looked for in the folder");
 }
 
 void ReadMask(const Path& file, Stack* stack) {
@@ -56,7 +61,10 @@ void ReadMask(const Path& file, Stack* stack) {
 
 void CheckImages(const StackOptions& options, Stack* stack) {
   int bits = 0;
-  for (const Path& path : stack->images) {
+  std::vector<Path> all = stack->images;
+  all.insert(all.end(), stack->white.begin(), stack->white.end());
+  if (!stack->dark.empty()) all.push_back(stack->dark);
+  for (const Path& path : all) {
     const std::unique_ptr<ImageRows> image = OpenImage(path);
     if (stack->width == 0) {
       stack->width = image->width(), stack->height = image->height(), stack->channels = image->channels();
@@ -110,13 +118,13 @@ std::size_t Stack::Texels() const {
 
 bool LooksLikeStack(const std::filesystem::path& path) {
   std::error_code error;
-  if (!std::filesystem::is_directory(path, error)) return path.extension() == ".lp" || path.filename() == "stack.toml";
+  if (!std::filesystem::is_directory(path, error)) return IsLightFile(path) || path.filename() == "stack.toml";
   if (std::filesystem::exists(path / "stack.toml", error) || std::filesystem::exists(path / "filenames.txt", error))
     return true;
   for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
-    if (entry.path().extension() == ".lp") return true;
+    if (IsLightFile(entry.path())) return true;
   }
-  return false;
+  return HasAngleNames(path);
 }
 
 Stack OpenStack(const std::filesystem::path& path, const StackOptions& options) {
@@ -140,8 +148,18 @@ std::string DigestOf(const Stack& stack) {
     all += fmt::format("{} {} {} {} {} {};", light.direction.x, light.direction.y, light.direction.z,
                        light.intensity[0], light.intensity[1], light.intensity[2]);
   }
+  if (stack.near) {
+    const NearLights& near = *stack.near;
+    all += fmt::format("near {} {} {} {};", near.width_mm, near.inverse_square, near.reference_mm, near.exponent);
+    for (const StackLight& light : stack.lights) {
+      all += fmt::format("{} {} {};", light.place.x, light.place.y, light.place.z);
+    }
+  }
   all.append(stack.mask.begin(), stack.mask.end());
   for (const std::filesystem::path& image : stack.images) all += Sha256(FileBytes(image).bytes());
+  if (!stack.dark.empty()) all += "dark" + Sha256(FileBytes(stack.dark).bytes());
+  for (const std::filesystem::path& image : stack.white) all += "white" + Sha256(FileBytes(image).bytes());
+  if (!stack.white.empty()) all += fmt::format("{}", stack.white_albedo);
   return Sha256Hex(all);
 }
 

@@ -5,6 +5,8 @@
 
 #include <sys/resource.h>
 
+#include "lobefit/maps/stack/geometry.h"
+
 namespace lobefit {
 namespace {
 
@@ -24,17 +26,31 @@ float ValueOf(const Response& response, double stored, bool integer) {
 }  // namespace
 
 StackReader::StackReader(const Stack& stack) : stack_(stack) {
-  AllowFiles(stack.images.size());
+  AllowFiles(stack.images.size() + stack.white.size() + 1);
   bool integer = false;
-  for (const std::filesystem::path& path : stack.images) {
-    images_.push_back(OpenImage(path));
-    integer = integer || images_.back()->bits() <= 16;
-  }
+  const auto open = [&](const std::filesystem::path& path) {
+    std::unique_ptr<ImageRows> image = OpenImage(path);
+    integer = integer || image->bits() <= 16;
+    return image;
+  };
+  for (const std::filesystem::path& path : stack.images) images_.push_back(open(path));
+  for (const std::filesystem::path& path : stack.white) white_.push_back(open(path));
+  if (!stack.dark.empty()) dark_ = open(stack.dark);
   row_.resize(stack.width * stack.channels);
+  dark_row_.assign(row_.size(), 0), white_row_.resize(row_.size());
   if (!integer) return;
   table_.resize(65536);
   for (std::size_t code = 0; code < table_.size(); ++code) {
     table_[code] = ValueOf(stack.response, static_cast<double>(code) / 65535, true);
+  }
+}
+
+void StackReader::NextLinear(ImageRows* image, std::vector<float>* row) const {
+  image->Next(row->data());
+  const bool integer = image->bits() <= 16;
+  for (float& value : *row) {
+    value = integer ? table_[static_cast<std::size_t>(std::lround(value * 65535.0F))]
+                    : ValueOf(stack_.response, static_cast<double>(value), false);
   }
 }
 
@@ -44,19 +60,30 @@ StackBand StackReader::Read(std::size_t first_row, std::size_t rows) {
   band.values.resize(rows * width * channels * lights);
   for (; next_row_ < first_row; ++next_row_) {
     for (const auto& image : images_) image->Next(row_.data());
+    for (const auto& image : white_) image->Next(row_.data());
+    if (dark_ != nullptr) dark_->Next(row_.data());
   }
   for (std::size_t y = 0; y < rows; ++y, ++next_row_) {
+    if (dark_ != nullptr) NextLinear(dark_.get(), &dark_row_);
     for (std::size_t light = 0; light < lights; ++light) {
-      images_[light]->Next(row_.data());
-      const bool integer = images_[light]->bits() <= 16;
-      for (std::size_t c = 0; c < channels; ++c) {
-        const auto scale = static_cast<float>(1 / stack_.lights[light].intensity[c]);
-        float* to = band.values.data() + (y * width * channels + c) * lights + light;
-        for (std::size_t x = 0; x < width; ++x) {
-          const float stored = row_[x * channels + c];
-          const float value = integer ? table_[static_cast<std::size_t>(std::lround(stored * 65535.0F))]
-                                      : ValueOf(stack_.response, static_cast<double>(stored), false);
-          to[x * channels * lights] = value * scale;
+      NextLinear(images_[light].get(), &row_);
+      if (!white_.empty()) NextLinear(white_[light].get(), &white_row_);
+      float* to = band.values.data() + y * width * channels * lights + light;
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t texel = next_row_ * width + x;
+        // Of the board: its f_r cos_theta_i; else the light's fall.
+        const double known = white_.empty() ? 1 / IrradianceAt(stack_, light, texel)
+                                            : stack_.white_albedo * kInvPi * DirectionAt(stack_, light, texel).z;
+        for (std::size_t c = 0; c < channels; ++c) {
+          const std::size_t k = x * channels + c;
+          float value = row_[k] - dark_row_[k];
+          if (white_.empty()) {
+            value *= static_cast<float>(known / stack_.lights[light].intensity[c]);
+          } else {
+            const float board = white_row_[k] - dark_row_[k];
+            value = board > 0 && std::isfinite(board) ? value * static_cast<float>(known) / board : std::nanf("");
+          }
+          to[k * lights] = value;
         }
       }
     }

@@ -12,6 +12,8 @@ namespace lobefit {
 
 // values[((row width + column) channels + channel) lights + light]: f_r cos_theta_i (stack.h); NaN where a pixel is no
 // number, infinite where it is saturated.
+// With photographs of a white board a pixel over the board's is the ratio of what both reflect; the lights' intensities
+// drop out.
 struct StackBand {
   std::size_t first_row = 0, rows = 0;
   std::vector<float> values;
@@ -30,8 +32,13 @@ class StackReader {
 
  private:
   const Stack& stack_;
-  std::vector<std::unique_ptr<ImageRows>> images_;
-  std::vector<float> row_, table_;  // one row; linear values of 16-bit codes, empty for floating point
+  // The next row of a picture, linear; infinite where it is saturated.
+  void NextLinear(ImageRows* image, std::vector<float>* row) const;
+
+  std::vector<std::unique_ptr<ImageRows>> images_, white_;
+  std::unique_ptr<ImageRows> dark_;
+  std::vector<float> row_, dark_row_, white_row_;
+  std::vector<float> table_;  // linear values of 16-bit codes, empty for floating point
   std::size_t next_row_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,23 +13,37 @@
 
 namespace lobefit {
 
-// A distant light: unit direction from the surface to it, and what the pixels of each channel are divided by.
+// Unit direction from the surface (of near lights: from the middle of the picture) to a light, and what the pixels of
+// each channel are divided by.
 struct StackLight {
   Vec3 direction;
   std::array<double, 3> intensity = {1, 1, 1};
+  Vec3 place = {0, 0, 0};  // as the file gives it: of near lights the position, mm
+};
+
+// Lights at positions, mm from the middle of the picture in its plane z = 0.
+struct NearLights {
+  double width_mm = 0;         // of the picture
+  bool inverse_square = true;  // intensities are those at `reference_mm` from a light; else at every texel
+  double reference_mm = 0;     // mean distance of the lights from the middle
+  double exponent = 0;  // of the cosine to a light's axis, which points to the middle: 0 for a bulb, 1 for a flat LED
 };
 
 // Everything but the pixels. x runs right and y up over the picture, z to the camera, which is orthographic: wo = +z.
-// After division by the intensity a pixel is f_r cos_theta_i, in 1/sr where `calibrated`, else times one unknown factor
+// After division by the intensity (and, of near lights, by what distance and axis make of it) a pixel is f_r cos_theta_i, in 1/sr where `calibrated`, else times one unknown factor
 // of the whole stack.
 struct Stack {
   std::filesystem::path path;  // as given
   std::string layout;          // "DiLiGenT folder", ...
   std::vector<std::filesystem::path> images;
   std::vector<StackLight> lights;  // one an image
+  std::optional<NearLights> near;  // else they are distant
   std::size_t width = 0, height = 0, channels = 0;
   std::vector<std::uint8_t> mask;  // [row width + column], 0: no texel; empty: all are
   Response response;
+  std::filesystem::path dark;                // photograph without a light, subtracted; empty: none
+  std::vector<std::filesystem::path> white;  // of a white matt board under each light, divided by; empty: none
+  double white_albedo = 1;
   bool calibrated = false;
   std::vector<std::string> remarks;
 

@@ -3,60 +3,52 @@
 #include <algorithm>
 #include <cmath>
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfStdIO.h>
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
-#include "lobefit/maps/output/previews.h"
+#include "lobefit/maps/output/pixels.h"
+#include "lobefit/maps/stack/geometry.h"
 #include "lobefit/synthesis/random.h"
 
 namespace lobefit {
 namespace {
 
-// One photograph: f_r cos_theta_i, [texel channels + channel]; NaN of texels without a normal becomes 0.
+constexpr double kWidthMm = 100;
+
+// What OpenStack will make of the files: where the lights are.
+Stack GeometryOf(const Maps& maps, const StackSynthesis& synthesis) {
+  Stack stack;
+  stack.width = maps.rows.width, stack.height = maps.rows.rows;
+  for (const Vec3& w : synthesis.lights) stack.lights.push_back({w, {1, 1, 1}, synthesis.distance * kWidthMm * w});
+  if (synthesis.distance > 0) stack.near = NearLights{kWidthMm, true, synthesis.distance * kWidthMm, 0};
+  return stack;
+}
+
+// One photograph: f_r cos_theta_i times the irradiance, [texel channels + channel]; NaN of texels without a normal becomes 0.
 std::vector<float> Photograph(const Maps& maps, const StackSynthesis& synthesis, std::size_t light) {
   const std::size_t channels = static_cast<std::size_t>(maps.channels), texels = maps.rows.rows * maps.rows.width;
   Relighting relighting(maps, {synthesis.lights[light]}, synthesis.calibrated, synthesis.fallback);
+  const Stack geometry = GeometryOf(maps, synthesis);
   RandomNumbers random(StreamSeed(synthesis.seed, light));
   std::vector<float> image(texels * channels);
   for (std::size_t t = 0; t < texels; ++t) {
     double values[kMostChannels];
+    const Vec3 direction = DirectionAt(geometry, light, t);
+    if (geometry.near) relighting.MoveLights({direction});
     relighting.Texel(t, values, 1);
-    const bool dark = synthesis.shadow && synthesis.shadow(t, synthesis.lights[light]);
+    const double irradiance = IrradianceAt(geometry, light, t);
+    const bool dark = synthesis.shadow && synthesis.shadow(t, direction);
     for (std::size_t c = 0; c < channels; ++c) {
-      double value = dark || std::isnan(values[c]) ? 0 : values[c];
+      double value = dark || std::isnan(values[c]) ? 0 : irradiance * values[c];
       if (synthesis.noise.multiplicative > 0) value *= 1 + synthesis.noise.multiplicative * random.Normal();
       if (synthesis.noise.additive > 0) value += synthesis.noise.additive * random.Normal();
       image[t * channels + c] = static_cast<float>(value);
     }
   }
   return image;
-}
-
-std::string EncodeExr(std::vector<float> image, std::size_t width, std::size_t height, std::size_t channels) {
-  Imf::Header header(static_cast<int>(width), static_cast<int>(height));
-  header.compression() = Imf::ZIP_COMPRESSION;
-  Imf::FrameBuffer buffer;
-  for (std::size_t c = 0; c < channels; ++c) {
-    const std::string name(1, channels == 1 ? 'Y' : "RGB"[c]);
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    char* base = static_cast<char*>(static_cast<void*>(image.data() + c));
-    buffer.insert(name, Imf::Slice(Imf::FLOAT, base, sizeof(float) * channels, sizeof(float) * channels * width));
-  }
-  Imf::StdOSStream bytes;
-  {
-    Imf::OutputFile file(bytes, header, 0);
-    file.setFrameBuffer(buffer);
-    file.writePixels(static_cast<int>(height));
-  }
-  return bytes.str();
 }
 
 std::string EncodeSixteen(const std::vector<float>& image, double intensity, std::size_t width, std::size_t height,
@@ -105,7 +97,7 @@ void WriteStack(const Maps& maps, const StackSynthesis& synthesis, const std::fi
   const double intensity = exr ? 1 : std::exp2(std::floor(std::log2(0.98 / most)));
   for (std::size_t l = 0; l < synthesis.lights.size(); ++l) {
     const std::string name = fmt::format("{:03}.{}", l + 1, exr ? "exr" : "png");
-    const Vec3& w = synthesis.lights[l];
+    const Vec3 w = synthesis.distance > 0 ? synthesis.distance * kWidthMm * synthesis.lights[l] : synthesis.lights[l];
     lp += fmt::format("{} {} {} {}\n", name, FormatDouble(w.x), FormatDouble(w.y), FormatDouble(w.z));
     intensities += fmt::format("{0} {0} {0}\n", FormatDouble(intensity));
     const std::vector<float> image = Photograph(maps, synthesis, l);
@@ -130,8 +122,11 @@ void WriteStack(const Maps& maps, const StackSynthesis& synthesis, const std::fi
   WriteFileAtomically(
       folder / "stack.toml",
       fmt::format("# Synthetic: the truth is truth.maps.exr; noise: {}\nencoding = \"linear\"\ncalibrated = {}\n\n"
-                  "[lights]\nfile = \"lights.lp\"\nintensity = \"intensity.txt\"\n",
-                  synthesis.noise == Noise{} ? "none" : ToText(synthesis.noise), synthesis.calibrated));
+                  "[lights]\nfile = \"lights.lp\"\nintensity = \"intensity.txt\"\n{}",
+                  synthesis.noise == Noise{} ? "none" : ToText(synthesis.noise), synthesis.calibrated,
+                  synthesis.distance > 0
+                      ? fmt::format("kind = \"position\"\n\n[plane]\nwidth_mm = {}\n", FormatDouble(kWidthMm))
+                      : ""));
 }
 
 }  // namespace lobefit

@@ -17,6 +17,8 @@ std::vector<Vec3> DomeLights(std::size_t count, double theta_max);
 
 struct StackSynthesis {
   std::vector<Vec3> lights;
+  // Widths of the picture, which is 100 mm wide, from its middle to bulbs in these directions; 0: distant lights.
+  double distance = 0;
   bool calibrated = true;
   Noise noise;  // multiplicative and additive alone
   std::uint64_t seed = 1;

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/base64.h"
-#include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 #include "lobefit/material/badge.h"
@@ -103,9 +102,6 @@ std::string ParameterTable(const ReportData& data) {
                rows, "</tbody></table></details></section>\n"},
               "");
 }
-
-// As the page's policy names what it lets run.
-std::string PolicyHash(std::string_view text) { return "sha256-" + Base64(Sha256(text)); }
 
 }  // namespace
 

@@ -2,6 +2,9 @@
 
 #include <stdexcept>
 
+#include "lobefit/base/base64.h"
+#include "lobefit/base/file.h"
+
 namespace lobefit {
 
 std::string FillTemplate(std::string_view text, const std::map<std::string, std::string, std::less<>>& values,
@@ -31,5 +34,7 @@ std::string FillTemplate(std::string_view text, const std::map<std::string, std:
     filled += value->second;
   }
 }
+
+std::string PolicyHash(std::string_view text) { return "sha256-" + Base64(Sha256(text)); }
 
 }  // namespace lobefit

@@ -14,4 +14,7 @@ namespace lobefit {
 std::string FillTemplate(std::string_view text, const std::map<std::string, std::string, std::less<>>& values,
                          const std::map<std::string, bool, std::less<>>& sections);
 
+// As a page's policy names a style or a script that it lets run.
+std::string PolicyHash(std::string_view text);
+
 }  // namespace lobefit

@@ -1,13 +1,12 @@
 // The live page: what stands in the file, and, where Chromium is installed, what it does in a browser.
 #include "lobefit/report/web/html.h"
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 
 #include "tests/report/synthetic.h"
+#include "tests/support/browser_page.h"
 #include "tests/support/paths.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,6 +27,8 @@
 namespace lobefit {
 namespace {
 
+using test::NumberAfter;
+using test::OutputOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -187,14 +188,6 @@ std::string TruthJson(const ReportData& data) {
   return nlohmann::json{{"reference", {{"size", kSize}, {"data", Base64(bytes)}}}, {"check", check}}.dump();
 }
 
-std::string OutputOf(const std::string& command) {
-  std::string out;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out.push_back(static_cast<char>(c));
-  pclose(pipe);
-  return out;
-}
-
 class HtmlPage : public testing::TestWithParam<PageCase> {
  protected:
   void SetUp() override {
@@ -225,41 +218,15 @@ class HtmlPage : public testing::TestWithParam<PageCase> {
 
   std::string Html() const { return std::string(FileBytes(path_).bytes()); }
 
-  // The page's own account of itself, or "" without a browser. The test's script stands before the page's policy, which
-  // is left as it is.
+  // The page's own account of itself, or "" without a browser.
   std::string Visit(const std::string& flags) const {
-    if (std::system("command -v chromium >/dev/null 2>&1") != 0) return "";
-    const std::string mark = "<meta charset=\"utf-8\">\n";
-    std::string html = Html();
     const std::string script(FileBytes(test::SourceDir() / "tests/report/web/page_selftest.js").bytes());
-    html.insert(html.find(mark) + mark.size(), "<script>const truth = " + truth_ + ";\n" + script + "</script>\n");
-    const std::filesystem::path page = path_.string() + ".test.html", profile = path_.string() + ".profile";
-    WriteFileAtomically(page, html);
-    const std::string dom = OutputOf(
-        Join({"timeout 300 chromium --headless=new --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader",
-              "--disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync",
-              "--window-size=500,900 --virtual-time-budget=10000 --user-data-dir='" + profile.string() + "'", flags,
-              "--dump-dom 'file://" + page.string() + "' 2>/dev/null"},
-             " "));
-    std::error_code ignored;
-    std::filesystem::remove_all(profile, ignored);
-    std::filesystem::remove(page, ignored);
-    const std::string result_mark = "<pre id=\"result\">";
-    const std::size_t begin = dom.find(result_mark);
-    return begin == std::string::npos
-               ? "no result"
-               : dom.substr(begin + result_mark.size(), dom.find("</pre>", begin) - begin - result_mark.size());
+    return test::VisitPage(Html(), "const truth = " + truth_ + ";\n" + script, path_, flags);
   }
 
   std::filesystem::path path_;
   std::string truth_;
 };
-
-double NumberAfter(const std::string& json, const std::string& key) {
-  std::smatch match;
-  if (!std::regex_search(json, match, std::regex("\"" + key + "\":([-+.0-9eE]+)"))) return std::nan("");
-  return ParseDouble(match[1].str()).value_or(std::nan(""));
-}
 
 TEST_P(HtmlPage, IsOneSmallFileThatNamesNoOther) {
   const std::string html = Html();

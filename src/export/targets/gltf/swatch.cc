@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lobefit/base/base64.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 namespace {
@@ -24,27 +25,29 @@ void Append(std::string* bytes, const std::vector<T>& values) {
   bytes->resize((bytes->size() + 3) / 4 * 4, '\0');
 }
 
-// A cap of a sphere of radius 1 over a square of side 1.4, tangents along +x.
+// Over a rectangle whose longer side is 1.4, tangents along +x; the cap is of a sphere of radius 1.
 struct Swatch {
   std::vector<float> position, normal, tangent, texture;
   std::vector<std::uint16_t> index;
   float low_z = 1;
 };
-Swatch MakeSwatch() {
+Swatch MakeSwatch(const SwatchForm& form) {
   Swatch swatch;
+  const double width = 1.4 * std::min(1.0, form.aspect), height = 1.4 * std::min(1.0, 1 / form.aspect);
   const auto add = [](std::vector<float>* values, std::initializer_list<double> numbers) {
     for (const double number : numbers) values->push_back(static_cast<float>(number));
   };
   for (int j = 0; j < kSwatchSide; ++j) {
     for (int i = 0; i < kSwatchSide; ++i) {
       const double u = static_cast<double>(i) / (kSwatchSide - 1), v = static_cast<double>(j) / (kSwatchSide - 1);
-      const double x = 1.4 * (u - 0.5), y = 1.4 * (v - 0.5), z = std::sqrt(std::max(0.0, 1 - x * x - y * y));
-      add(&swatch.position, {x, y, z});
-      add(&swatch.normal, {x, y, z});
-      const double length = std::hypot(z, x);
-      add(&swatch.tangent, {z / length, 0, -x / length, 1});
+      const double x = width * (u - 0.5), y = height * (v - 0.5);
+      const Vec3 normal = form.curved ? Vec3{x, y, std::sqrt(std::max(0.0, 1 - x * x - y * y))} : Vec3{0, 0, 1};
+      add(&swatch.position, {x, y, normal.z});
+      add(&swatch.normal, {normal.x, normal.y, normal.z});
+      const double length = std::hypot(normal.z, normal.x);
+      add(&swatch.tangent, {normal.z / length, 0, -normal.x / length, 1});
       add(&swatch.texture, {u, 1 - v});
-      swatch.low_z = std::min(swatch.low_z, static_cast<float>(z));
+      swatch.low_z = std::min(swatch.low_z, static_cast<float>(normal.z));
     }
   }
   for (int j = 0; j + 1 < kSwatchSide; ++j) {
@@ -60,8 +63,8 @@ Swatch MakeSwatch() {
 
 }  // namespace
 
-void AddSwatch(Json* gltf) {
-  const Swatch swatch = MakeSwatch();
+void AddSwatch(Json* gltf, const SwatchForm& form) {
+  const Swatch swatch = MakeSwatch(form);
   std::string bytes;
   Json views = Json::array();
   const auto add = [&](const auto& values, int target) {
@@ -77,7 +80,7 @@ void AddSwatch(Json* gltf) {
   add(swatch.texture, kArrayBuffer);
   add(swatch.index, kElementArrayBuffer);
   constexpr int kCount = kSwatchSide * kSwatchSide;
-  const float side = swatch.position[0];
+  const float side = swatch.position[0], low = swatch.position[1];
   (*gltf)["meshes"] = {{{"name", "swatch"},
                         {"primitives",
                          {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}, {"TANGENT", 2}, {"TEXCOORD_0", 3}}},
@@ -88,8 +91,8 @@ void AddSwatch(Json* gltf) {
        {"componentType", kFloat},
        {"count", kCount},
        {"type", "VEC3"},
-       {"min", {side, side, swatch.low_z}},
-       {"max", {-side, -side, 1.0}}},
+       {"min", {side, low, swatch.low_z}},
+       {"max", {-side, -low, 1.0}}},
       {{"bufferView", 1}, {"componentType", kFloat}, {"count", kCount}, {"type", "VEC3"}},
       {{"bufferView", 2}, {"componentType", kFloat}, {"count", kCount}, {"type", "VEC4"}},
       {{"bufferView", 3}, {"componentType", kFloat}, {"count", kCount}, {"type", "VEC2"}},
