@@ -43,6 +43,7 @@ struct WriteContext {
   std::string name;                 // of the material; files are NAME and an ending
   std::vector<std::string> header;  // lines of the comment at the top of text files
   std::string map_path;             // folder before the name of a normal map, as the renderer is to look for it
+  bool old_mitsuba = false;         // for Mitsuba 3.0 to 3.7.0
 
   std::filesystem::path File(std::string_view ending) const { return folder / (name + std::string(ending)); }
 };

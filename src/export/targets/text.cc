@@ -1,9 +1,11 @@
 #include "lobefit/export/targets/text.h"
 
+#include <algorithm>
 #include <cctype>
 
 #include <fmt/format.h>
 
+#include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 
 namespace lobefit {
@@ -28,6 +30,25 @@ std::string Numbers9(const std::vector<double>& values, std::string_view separat
 }
 std::string Numbers9(const Color3& values, std::string_view separator) {
   return Numbers9(ToSpectrum(values), separator);
+}
+
+std::string PythonString(std::string_view text) {
+  std::string literal = "'";
+  while (!text.empty()) {
+    const std::size_t length = Utf8Length(text);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(length, 1));
+    const auto c = static_cast<unsigned char>(character[0]);
+    if (length == 0) {
+      literal += '?';
+    } else if (c < 0x20 || c == 0x7f) {
+      literal += fmt::format("\\x{:02x}", c);
+    } else {
+      if (c == '\'' || c == '\\') literal += '\\';
+      literal += character;
+    }
+    text.remove_prefix(character.size());
+  }
+  return literal + "'";
 }
 
 std::string CommentLines(const std::vector<std::string>& lines, std::string_view mark) {

@@ -46,10 +46,19 @@ bool HasThousandsSeparator(std::string_view field) {
   return field.find_first_not_of("+-0123456789.,") == std::string_view::npos;
 }
 
-bool IsNumeric(std::string_view field, char separator) {
+// Between commas a number may have one of its own within quotes.
+bool IsNumeric(std::string_view field) {
   std::string storage;
   field = Unquoted(field, &storage);
-  return ParseDouble(field) || (separator != ',' && (HasDecimalComma(field) || HasThousandsSeparator(field)));
+  return ParseCsvNumber(field, '.') || HasDecimalComma(field) || HasThousandsSeparator(field);
+}
+
+// "Date: 12", which a comma may split from what follows.
+bool IsKeyed(std::string_view field) {
+  const std::size_t mark = field.find_first_of(":=");
+  return mark != std::string_view::npos && mark > 0 &&
+         std::any_of(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(mark),
+                     [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
 }
 
 bool NamesAnything(std::string_view field) {
@@ -60,10 +69,10 @@ bool NamesAnything(std::string_view field) {
 }
 
 // At least two numbers, at least as many of them as of anything else, and no name of a column.
-bool IsData(const Fields& fields, char separator) {
+bool IsData(const Fields& fields) {
   std::size_t numbers = 0, others = 0;
   for (const std::string_view field : fields) {
-    if (IsNumeric(field, separator)) {
+    if (IsNumeric(field)) {
       ++numbers;
     } else if (!Trim(field).empty()) {
       ++others;
@@ -71,7 +80,7 @@ bool IsData(const Fields& fields, char separator) {
   }
   if (numbers < 2 || numbers < others) return false;
   return others == 0 || std::none_of(fields.begin(), fields.end(), [&](std::string_view field) {
-           return !IsNumeric(field, separator) && !Trim(field).empty() && NamesAnything(field);
+           return !IsNumeric(field) && !Trim(field).empty() && (IsKeyed(field) || NamesAnything(field));
          });
 }
 
@@ -174,7 +183,7 @@ class HeaderReader {
       for (std::size_t i = 0; i < lines_.size(); ++i) {
         if (lines_[i].comment) continue;
         const Fields fields = SplitFields(lines_[i].text, candidate);
-        if (fields.size() < 2 || !IsData(fields, candidate)) continue;
+        if (fields.size() < 2 || !IsData(fields)) continue;
         header_.separator = candidate;
         data_ = i;
         FindDecimalMark();
@@ -192,7 +201,6 @@ class HeaderReader {
   }
 
   void FindDecimalMark() {
-    if (header_.separator == ',') return;
     std::size_t commas = 0, points = 0;
     std::string storage;
     for (std::size_t i = data_; i < lines_.size(); ++i) {
@@ -233,7 +241,7 @@ class HeaderReader {
   bool TryNames(std::size_t at) {
     const std::string_view text = lines_[at].comment ? CommentText(lines_[at].text) : lines_[at].text;
     const Fields fields = SplitFields(text, header_.separator);
-    if (fields.size() < 2 || (fields.size() == 2 && IsNumeric(fields[1], header_.separator))) return false;
+    if (fields.size() < 2 || (fields.size() == 2 && IsNumeric(fields[1]))) return false;
     std::vector<CsvColumn> columns = Classify(fields);
     CsvColumn rows;
     Coordinate head = Coordinate::kPhiO;
@@ -254,7 +262,9 @@ class HeaderReader {
       const std::vector<std::string> names = Combined(SplitFields(lines_[at - 1].text, header_.separator), fields);
       for (std::size_t i = 0; i < columns.size(); ++i) {
         const CsvColumn combined = ClassifyColumn(names[i]);
-        if (combined.role == ColumnRole::kCoordinate) columns[i] = combined;
+        // A heading may stand alone, over a cell that is empty or holds its unit.
+        const bool alone = columns[i].role == ColumnRole::kIgnored && combined.role == ColumnRole::kValue;
+        if (combined.role == ColumnRole::kCoordinate || alone) columns[i] = combined;
       }
     }
     mapping_.Rename(&columns);
@@ -272,6 +282,8 @@ class HeaderReader {
                      "has " + std::to_string(fields) + " fields, but line " + std::to_string(header_.names_line) +
                          " names " + std::to_string(header_.columns.size()) + " columns");
         }
+        NameRowNumbers(fields);
+        TakeHeadAbove(i);
         return true;
       }
     }
@@ -297,6 +309,40 @@ class HeaderReader {
       return SetNames(i, std::move(columns));
     }
     return false;
+  }
+
+  // R writes the numbers of the rows without a name for them.
+  void NameRowNumbers(std::size_t fields) {
+    if (header_.columns.size() + 1 != fields || header_.columns.back().name.empty()) return;
+    std::size_t rows = 0;
+    std::optional<double> last;
+    std::string storage;
+    for (std::size_t i = data_; i < lines_.size() && rows < 5; ++i) {
+      if (lines_[i].comment) continue;
+      const Fields row = SplitFields(lines_[i].text, header_.separator);
+      const std::optional<double> number = ParseDouble(Unquoted(row[0], &storage));
+      if (row.size() != fields || !number || (last && *number != *last + 1)) return;
+      last = number;
+      ++rows;
+    }
+    if (rows < 2) return;
+    header_.columns.insert(header_.columns.begin(), ClassifyColumn(""));
+    header_.remarks.emplace_back("the first column has no name; it counts the rows and was not used");
+  }
+
+  // What the numbers that columns are named by are may stand alone above them: "AOI (deg)".
+  void TakeHeadAbove(std::size_t names) {
+    const bool numbers = std::any_of(header_.columns.begin(), header_.columns.end(), [](const CsvColumn& column) {
+      return column.role == ColumnRole::kNumber;
+    });
+    if (!numbers || header_.head_coordinate || names == 0 || lines_[names - 1].comment) return;
+    const Fields above = SplitFields(lines_[names - 1].text, header_.separator);
+    const auto is_filled = [](std::string_view field) { return !Trim(field).empty(); };
+    const auto only = std::find_if(above.begin(), above.end(), is_filled);
+    if (std::count_if(above.begin(), above.end(), is_filled) != 1) return;
+    std::string storage;
+    const CsvColumn column = ClassifyColumn(Unquoted(*only, &storage));
+    if (column.role == ColumnRole::kCoordinate) header_.head_coordinate = column.coordinate;
   }
 
   void ReadCommentKeys() {
@@ -400,6 +446,15 @@ void SplitCsvLine(std::string_view line, char separator, std::vector<std::string
 }
 
 std::optional<double> ParseCsvNumber(std::string_view field, char decimal_mark) {
+  field = Trim(field);
+  if (field.ends_with("\xc2\xb0")) field = Trim(field.substr(0, field.size() - 2));
+  // Fortran writes the exponents of its double precision with a D.
+  const std::size_t exponent = field.find_first_of("dD", 1);
+  if (exponent != std::string_view::npos && field[exponent - 1] >= '.' && field[exponent - 1] <= '9') {
+    std::string text(field);
+    text[exponent] = 'e';
+    return ParseCsvNumber(text, decimal_mark);
+  }
   if (decimal_mark == '.') return ParseDouble(field);
   if (field.find('.') != std::string_view::npos && field.find(',') != std::string_view::npos) return std::nullopt;
   std::string point(field);

@@ -109,5 +109,19 @@ TEST(CsvMarks, AnglesThatNamesOrUnitsBelie) {
   EXPECT_TRUE(HasRemark(ReadText(mixed), "are the azimuths radians?"));
 }
 
+TEST(CsvMarks, LimitsOfDetectionAndBrackets) {
+  const Measurement m = ReadText("theta_i,theta_o,dphi,brdf\n10,20,0,1\n10,30,0,<LOD\n10,40,0,(null)\n10,50,0,> 100\n");
+  EXPECT_EQ(m.samples.size(), 1U);
+  EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 3U);
+}
+
+TEST(CsvMarks, AColumnOfFlagsIsNamed) {
+  constexpr char kFlagged[] = "theta_i,theta_o,dphi,brdf,valid\n10,20,0,1,1\n10,30,0,9,0\n";
+  EXPECT_TRUE(HasRemark(ReadText(kFlagged), "the column 'valid' may say which rows are good"));
+  ReadOptions options;
+  options.where = "valid=1";
+  EXPECT_EQ(ReadText(kFlagged, options).samples.size(), 1U);
+}
+
 }  // namespace
 }  // namespace lobefit
