@@ -17,6 +17,7 @@
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
+#include "lobefit/base/threads.h"
 #include "lobefit/base/version.h"
 
 namespace lobefit {
@@ -85,6 +86,7 @@ int Run(int argc, char** argv) {
     const std::string verb = argc > 1 && argv[1][0] != '-' ? std::string(" ") + argv[1] : "";
     throw UsageError(fmt::format("{}; see `lobefit{} --help`", error.what(), verb));
   }
+  LimitThreads(common.threads);
   return run();
 }
 

@@ -1,4 +1,5 @@
 #include "lobefit/base/parallel.h"
+#include "lobefit/base/threads.h"
 
 #include <atomic>
 #include <stdexcept>
@@ -30,6 +31,13 @@ TEST(ThreadPool, HandsOnAnExceptionAndStaysUsable) {
   std::atomic<int> count = 0;
   pool.Run(10, [&](std::size_t) { ++count; });
   EXPECT_EQ(count, 10);
+}
+
+TEST(HardwareThreads, AreLimitedByTheProgram) {
+  LimitThreads(1);
+  EXPECT_EQ(HardwareThreads(), 1);
+  LimitThreads(0);
+  EXPECT_GE(HardwareThreads(), 1);
 }
 
 }  // namespace

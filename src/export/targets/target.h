@@ -78,6 +78,7 @@ struct Target {
   // is not understood: an input that the reader does not evaluate is an error or stands in the remarks.
   bool (*recognises)(std::string_view bytes) = nullptr;
   ImportedMaterial (*read)(const InputFile& file) = nullptr;
+  bool is_text = false;  // a few numbers and names: files beyond 16 MiB are refused before they are read
 };
 
 // A function of R, G, B as one of the fit's channels: itself, or its first channel where the fit is grey.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "lobefit/base/error.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 
@@ -84,8 +85,13 @@ std::string MapComment(const std::vector<std::string>& maps, std::string_view be
 }
 
 std::filesystem::path FindMap(const std::filesystem::path& file, const std::string& name) {
-  const std::filesystem::path whole = file.parent_path() / name;
-  return std::filesystem::exists(whole) ? whole : file.parent_path() / std::filesystem::path(name).filename();
+  std::filesystem::path map = file.parent_path() / name;
+  if (!std::filesystem::exists(map)) map = file.parent_path() / std::filesystem::path(name).filename();
+  if (std::filesystem::exists(map) && !std::filesystem::is_regular_file(map)) {
+    throw InputError(PrintableName(file) + ": the normal map '" + PrintableName(map) +
+                     "' is no regular file; name a PNG picture");
+  }
+  return map;
 }
 
 std::string GlslPrefix(const std::string& name) {

@@ -35,7 +35,7 @@ double RotationOfComment(std::string_view text);
 std::string MapComment(const std::vector<std::string>& maps, std::string_view beside);
 
 // The file of a map that a material file names: in that file's folder by the whole name or, where a renderer looks
-// elsewhere, by its last part.
+// elsewhere, by its last part. Throws InputError for what is no regular file, such as a device.
 std::filesystem::path FindMap(const std::filesystem::path& file, const std::string& name);
 
 // Names in GLSL of one material, so that several files make one shader: "lobefit_NAME_"; and the macro by which the

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<std::string_view, 9> kPolar = {"theta",       "th",         "polar", "zenith",  "zen",
                                                     "inclination", "colatitude", "tht",   "vartheta"};
-constexpr std::array<std::string_view, 4> kElevation = {"elevation", "elev", "altitude", "grazing"};
+constexpr std::array<std::string_view, 5> kElevation = {"elevation", "elev", "el", "altitude", "grazing"};
 constexpr std::array<std::string_view, 11> kAzimuthal = {"phi", "ph",     "azimuth",  "azimuthal", "azim",  "az",
                                                          "azi", "azimut", "azimutal", "varphi",    "acimut"};
 constexpr std::array<std::string_view, 8> kAngle = {"angle",  "angles", "winkel",    "angulo",

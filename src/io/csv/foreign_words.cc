@@ -111,7 +111,11 @@ constexpr std::array<Translation, 48> kParts = {{
     {"bolgelaengde", "wavelength"}, {"indfalds", "incident"},  {"innfalls", "incident"},
 }};
 
-constexpr std::array<Translation, 61> kForeignWords = {{
+constexpr std::array<Translation, 72> kForeignWords = {{
+    {"rot", "red"},               {"gruen", "green"},            {"blau", "blue"},
+    {"rouge", "red"},             {"vert", "green"},             {"bleu", "blue"},
+    {"rosso", "red"},             {"verde", "green"},            {"blu", "blue"},
+    {"rojo", "red"},              {"azul", "blue"},
     {"angulo", "angle"},          {"angolo", "angle"},           {"kat", "angle"},
     {"uhel", "angle"},            {"incidencia", "incident"},    {"incidenza", "incident"},
     {"padania", "incident"},      {"dopadu", "incident"},        {"iluminacion", "illumination"},

@@ -16,6 +16,7 @@ namespace {
 using Fields = std::vector<std::string_view>;
 
 // A head is looked for in so much of the file.
+constexpr std::size_t kMostColumns = 65536;
 constexpr std::size_t kHeadLines = 400, kHeadBytes = std::size_t{1} << 20, kFirstRows = 60;
 
 struct Line {
@@ -171,6 +172,20 @@ class HeaderReader {
         continue;
       }
       lines_.push_back({lines.line_number(), text, IsComment(text)});
+      if (!lines_.back().comment) CheckColumns(lines_.back());
+    }
+  }
+
+  // Before any name is looked at.
+  void CheckColumns(const Line& line) const {
+    if (line.text.size() <= kMostColumns) return;
+    for (const char separator : {';', '\t', '|', ',', ' '}) {
+      const auto fields = static_cast<std::size_t>(std::count(line.text.begin(), line.text.end(), separator)) + 1;
+      if (fields > kMostColumns) {
+        FailAtLine(file_, line.number,
+                   "has " + std::to_string(fields) + " fields; at most " + std::to_string(kMostColumns) +
+                       " columns are read");
+      }
     }
   }
 
@@ -258,8 +273,10 @@ class HeaderReader {
                   ? 1
                   : 0;
     }
-    if (lone > 1 && at > 0 && !lines_[at - 1].comment) {
-      const std::vector<std::string> names = Combined(SplitFields(lines_[at - 1].text, header_.separator), fields);
+    const Fields above = at > 0 && !lines_[at - 1].comment ? SplitFields(lines_[at - 1].text, header_.separator) : Fields();
+    // Not a title with its value.
+    if (lone > 1 && !above.empty() && std::none_of(above.begin(), above.end(), IsNumeric)) {
+      const std::vector<std::string> names = Combined(above, fields);
       for (std::size_t i = 0; i < columns.size(); ++i) {
         const CsvColumn combined = ClassifyColumn(names[i]);
         // A heading may stand alone, over a cell that is empty or holds its unit.
@@ -298,6 +315,7 @@ class HeaderReader {
         return true;
       }
     }
+    if (NameByNumbers(fields)) return true;
     // No line names a direction: the last line of words before the data then says what there is.
     for (std::size_t i = data_; i-- > 0;) {
       if (lines_[i].comment) continue;
@@ -309,6 +327,17 @@ class HeaderReader {
       return SetNames(i, std::move(columns));
     }
     return false;
+  }
+
+  // Rows without any names, where the mapping says what the columns are by their numbers.
+  bool NameByNumbers(std::size_t fields) {
+    if (fields == 0) return false;
+    std::vector<CsvColumn> columns(fields, ClassifyColumn(""));
+    mapping_.Rename(&columns);
+    if (!NamesADirection(columns)) return false;
+    header_.columns = std::move(columns);
+    header_.names_line = lines_[data_].number;
+    return true;
   }
 
   // R writes the numbers of the rows without a name for them.
@@ -361,7 +390,7 @@ class HeaderReader {
 
   void TakeUnits() {
     header_.first_data_line = data_ < lines_.size() ? lines_[data_].number : lines_[names_].number + 1;
-    for (std::size_t i = names_ + 1; i < data_; ++i) {
+    for (std::size_t i = names_ + 1; i > 0 && i < data_; ++i) {
       if (lines_[i].comment) continue;
       const Fields units = SplitFields(lines_[i].text, header_.separator);
       if (units.size() > header_.columns.size() + 1 || !std::all_of(units.begin(), units.end(), IsUnitOrBlank))
@@ -387,7 +416,9 @@ class HeaderReader {
   [[noreturn]] void FailWithoutNames() const {
     FailAtLine(
         file_, lines_[std::min(data_, lines_.size() - 1)].number,
-        "numbers begin, but no line names the columns; write a line of names first. Allowed: " + AllowedColumns());
+        "numbers begin, but no line names the columns; write a line of names first, or say what they are by --columns "
+        "theta_i=#1,theta_o=#2,... Allowed: " +
+            AllowedColumns());
   }
 
   const InputFile& file_;

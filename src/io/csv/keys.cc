@@ -260,9 +260,11 @@ bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::str
     if (!Trim(field).empty()) filled.push_back(Trim(field));
   }
   if (filled.empty() || filled.size() > 3) return false;
-  const std::size_t mark = filled[0].find_first_of(":=");
   std::string text(filled[0]);
-  if (mark == std::string_view::npos) {
+  // "AOI = 30" between blanks has its mark in a field of its own.
+  const bool marked = filled[0].find_first_of(":=") != std::string_view::npos ||
+                      (filled.size() > 1 && filled[1].find_first_of(":=") == 0);
+  if (!marked) {
     if (filled.size() == 1) return ReadSentence(filled[0], keys);
     text += ':';
   }

@@ -226,6 +226,11 @@ class LayoutBuilder {
              " are given; give all three, or choose one column with --value-column");
       }
     }
+    constexpr std::size_t kMostWavelengths = 4096;
+    if (spectral.size() > kMostWavelengths) {
+      Fail(std::to_string(spectral.size()) + " columns hold wavelengths; at most " + std::to_string(kMostWavelengths) +
+           " are read: take out some, or choose one with --value-column");
+    }
     if (!spectral.empty()) candidates.push_back(spectral);
     if (candidates.size() != 1) {
       std::vector<std::string> names;
@@ -295,7 +300,12 @@ class LayoutBuilder {
     std::map<std::string, std::size_t> by_channel;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const CsvColumn& column = columns_[i];
-      if (column.role == ColumnRole::kSigma && !by_channel.emplace(column.channel, i).second) {
+      if (column.role != ColumnRole::kSigma) continue;
+      const auto [known, is_new] = by_channel.emplace(column.channel, i);
+      if (is_new || !column.problem.empty()) continue;
+      if (!columns_[known->second].problem.empty()) {
+        known->second = i;  // the standard uncertainty, beside an expanded one of unknown factor
+      } else {
         Fail("two columns are named " + Quoted(column) + "; remove one of them");
       }
     }

@@ -57,14 +57,17 @@ class CsvReader {
     AddRemarks();
     if (by_wavelength_) {
       Measurement gathered;
-      WithPath([&] { gathered = by_wavelength_->Gather(repeated_ == RepeatedRows::kMean); });
+      WithPath([&] { gathered = by_wavelength_->Gather(repeated_ == RepeatedRows::kMean, options_.wavelength_tolerance_nm); });
+      RequireWhole(gathered);
       for (int r = 0; r < kSetAsideReasons; ++r) {
         const auto reason = static_cast<SetAsideReason>(r);
         gathered.set_aside.Add(reason, builder.measurement().set_aside[reason]);
       }
       if (gathered.channels.size() < by_wavelength_->wavelengths()) {
-        notes_.remarks.push_back(std::to_string(by_wavelength_->wavelengths()) +
-                                 " wavelengths that wander by less than half of their spacing are " +
+        const std::string how = options_.wavelength_tolerance_nm
+                                    ? " wavelengths within " + FormatDouble(*options_.wavelength_tolerance_nm) + " nm are "
+                                    : " wavelengths that wander by less than half of their spacing are ";
+        notes_.remarks.push_back(std::to_string(by_wavelength_->wavelengths()) + how +
                                  std::to_string(gathered.channels.size()) + " channel" +
                                  (gathered.channels.size() == 1 ? "" : "s"));
       }
@@ -74,6 +77,21 @@ class CsvReader {
   }
 
  private:
+  // Rows whose wavelengths differ from pair to pair leave no pair that has all of them.
+  void RequireWhole(const Measurement& gathered) const {
+    if (!options_.channels.empty() || gathered.samples.size() == 0 || gathered.channels.size() < 2) return;
+    for (std::size_t i = 0; i < gathered.samples.size(); ++i) {
+      const bool whole = std::none_of(gathered.samples.values.begin(), gathered.samples.values.end(),
+                                      [&](const std::vector<double>& values) { return std::isnan(values[i]); });
+      if (whole) return;
+    }
+    throw InputError(file_.path.string() + ": " + std::to_string(gathered.channels.size()) +
+                     " different wavelengths, and none of the " + std::to_string(by_wavelength_->pairs()) +
+                     " pairs of directions has all of them; if the wavelength wanders from row to row, "
+                     "--wavelength-tolerance NM makes one channel of those that differ by no more, else choose channels "
+                     "with --channels");
+  }
+
   // A turn of the whole sample.
   void StateTurn(Samples* samples) const {
     const FixedCoordinate* turn = header_.keys.Find(Coordinate::kSampleRotation);

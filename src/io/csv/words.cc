@@ -188,8 +188,10 @@ NameWords SplitName(std::string_view name) {
         IsLetter(c) || IsDigit(c) || decimal_point || sign || percent || static_cast<unsigned char>(c) >= 0x80;
     const bool hump = IsUpper(c) && i > 0 &&
                       (IsLower(text[i - 1]) ||
-                       (IsUpper(text[i - 1]) && i + 1 < text.size() && IsLower(text[i + 1]) && word.size() > 1));
-    if (!kept || (hump && word.size() > 1)) {
+                       (IsUpper(text[i - 1]) && i + 1 < text.size() && IsLower(text[i + 1])));
+    // "thetaIRad": the letter between is a word.
+    const bool lone = hump && word.size() == 1 && i > 1 && IsLower(text[i - 2]);
+    if (!kept || (hump && word.size() > 1) || lone) {
       AppendWord(std::exchange(word, {}), &split);
     }
     if (kept) word += c;

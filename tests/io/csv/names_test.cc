@@ -249,9 +249,15 @@ TEST(CsvNames, InOtherLanguages) {
   EXPECT_EQ(ClassifyColumn("ДФОС (1/ср)").role, ColumnRole::kValue);
   EXPECT_EQ(ClassifyColumn("波長(nm)").role, ColumnRole::kWavelength);
   EXPECT_EQ(ClassifyColumn("±").role, ColumnRole::kSigma);
+  for (const char* names : {"Rot,Grün,Blau", "rouge,vert,bleu", "rojo,verde,azul"})
+    EXPECT_EQ(ReadText("theta_i,theta_o," + std::string(names) + "\n10,20,1,2,3\n").channels.names,
+              (std::vector<std::string>{"R", "G", "B"}));
 }
 
 TEST(CsvNames, UnitsThatHaveSignsOfTheirOwn) {
+  ExpectCoordinate("source_el", Coordinate::kThetaI);
+  ExpectCoordinate("thetaIRad", Coordinate::kThetaI);
+  EXPECT_EQ(*ClassifyColumn("thetaIRad").angle_unit, AngleUnit::kRadians);
   for (const char* name : {"brdf_1/sr", "brdf_per_sr", "brdf_sr-1", "BRDF sr^-1", "BRDF (inverse steradian)"}) {
     const CsvColumn column = ClassifyColumn(name);
     EXPECT_EQ(column.role, ColumnRole::kValue) << name;

@@ -137,5 +137,32 @@ TEST(Spreadsheets, RowNumbersOfRWithoutAName) {
   EXPECT_NE(MessageOf("theta_i theta_o dphi brdf\n1 10 20 0 5\n3 10 30 0 6\n").find("has 5 fields"), std::string::npos);
 }
 
+TEST(Spreadsheets, RowsWithoutNamesByTheirNumbers) {
+  ReadOptions options;
+  options.columns = "theta_i=#1,theta_o=#2,dphi=#3,f=#4";
+  const Measurement m = ReadText("10,20,0,5\n10,30,90,6\n", options);
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 1, 10, 0, 30, 90, 6);
+}
+
+TEST(Spreadsheets, ATitleWithItsValueIsNoHeading) {
+  for (const char* head : {"Scatter Table\nIncident Angle\t30\nPolar\tAzimuth\tBSDF\n0\t0\t1\n20\t180\t2\n",
+                           "AOI = 30\nWavelength 0.633\nTheta Phi BRDF\n0 0 1\n20 180 2\n"}) {
+    const Measurement m = ReadText(head);
+    ASSERT_EQ(m.samples.size(), 2U) << head;
+    ExpectSample(m, 1, 30, 0, 20, 180, 2);
+  }
+}
+
+TEST(Spreadsheets, StandardUncertaintyBesideAnExpandedOne) {
+  const Measurement m = ReadText("theta_i,theta_o,BRDF,u_BRDF,U_BRDF\n10,20,2,0.1,0.2\n10,30,4,0.1,0.2\n");
+  EXPECT_EQ(m.samples.weight.size(), 2U);
+}
+
+TEST(Spreadsheets, JsonOfAnotherKindIsSaid) {
+  EXPECT_NE(MessageOf("[{\"theta_i\": 10, \"theta_o\": 20, \"brdf\": 1}]").find("is JSON of a kind that is not known"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -147,7 +147,8 @@ Target MitsubaTarget() {
           .evaluate = EvaluateMitsuba,
           .write = WriteMitsuba,
           .recognises = IsMitsuba,
-          .read = ReadMitsuba};
+          .read = ReadMitsuba,
+          .is_text = true};
 }
 
 }  // namespace lobefit
