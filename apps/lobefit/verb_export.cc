@@ -46,8 +46,8 @@ bool IsOldMitsuba(const std::string& version) {
   const bool valid = parts.size() <= 3 && parts[0] == 3 &&
                      std::all_of(parts.begin(), parts.end(), [](long long part) { return part >= 0; });
   if (!valid)
-    throw UsageError(fmt::format("--mitsuba-version {}: a version of Mitsuba 3 is allowed, as in 3.7.0",
-                                 Excerpt(version)));
+    throw UsageError(
+        fmt::format("--mitsuba-version {}: a version of Mitsuba 3 is allowed, as in 3.7.0", Excerpt(version)));
   parts.resize(3, 0);
   return parts < std::vector<long long>{3, 7, 1};
 }
@@ -61,7 +61,8 @@ void RequireUse(const std::vector<const Target*>& targets, const char* option, b
   for (const Target& target : ExportTargets()) {
     if (uses(target)) names.emplace_back(target.name);
   }
-  throw UsageError(fmt::format("{} is an option of {}, and none of these is a target; leave it out", option, Join(names)));
+  throw UsageError(
+      fmt::format("{} is an option of {}, and none of these is a target; leave it out", option, Join(names)));
 }
 
 int RunExport(const ExportVerb& verb, const CommonOptions& common) {
@@ -76,9 +77,8 @@ int RunExport(const ExportVerb& verb, const CommonOptions& common) {
   ExportOptions options;
   options.targets = ParseTargets(verb.targets);
   const auto is_mitsuba = [](const Target& target) { return target.name == std::string_view("mitsuba"); };
-  RequireUse(options.targets, "--map-path", !verb.map_path.empty(), [&](const Target& target) {
-    return is_mitsuba(target) || target.name == std::string_view("pbrt");
-  });
+  RequireUse(options.targets, "--map-path", !verb.map_path.empty(),
+             [&](const Target& target) { return is_mitsuba(target) || target.name == std::string_view("pbrt"); });
   RequireUse(options.targets, "--mitsuba-version", !verb.mitsuba_version.empty(), is_mitsuba);
   RequireUse(options.targets, verb.refit ? "--refit" : "--copy", verb.refit || verb.copy,
              [](const Target& target) { return target.own_model != nullptr; });

@@ -1,11 +1,12 @@
 #include "lobefit/base/parallel.h"
-#include "lobefit/base/threads.h"
 
 #include <atomic>
 #include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "lobefit/base/threads.h"
 
 namespace lobefit {
 namespace {

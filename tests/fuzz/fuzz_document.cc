@@ -1,7 +1,8 @@
 #include <string>
 
-#include "lobefit/material/json.h"
 #include "tests/fuzz/fuzz_reader.h"
+
+#include "lobefit/material/json.h"
 
 // A document that is read is written, and read again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "lobefit/export/targets/imported_material.h"
 #include "tests/fuzz/fuzz_reader.h"
+
+#include "lobefit/export/targets/imported_material.h"
 
 namespace lobefit {
 

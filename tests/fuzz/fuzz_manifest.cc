@@ -1,7 +1,8 @@
 #include <string_view>
 
-#include "lobefit/batch/list/manifest.h"
 #include "tests/fuzz/fuzz_reader.h"
+
+#include "lobefit/batch/list/manifest.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const lobefit::ManifestNames names = {{"recipe", "theta-max"}, {"recipe"}, {"out"}, {"verdict"}};

@@ -1,8 +1,9 @@
 #include <string_view>
 
+#include "tests/fuzz/fuzz_reader.h"
+
 #include "lobefit/math/vec.h"
 #include "lobefit/renderer/normal_map.h"
-#include "tests/fuzz/fuzz_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

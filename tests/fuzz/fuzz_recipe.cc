@@ -1,7 +1,8 @@
 #include <string>
 
-#include "lobefit/recipe/recipe.h"
 #include "tests/fuzz/fuzz_reader.h"
+
+#include "lobefit/recipe/recipe.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

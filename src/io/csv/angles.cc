@@ -238,8 +238,7 @@ class AngleFinder {
       layout_.coordinates.emplace_back(column.coordinate, i);
     }
     for (const CsvColumn& column : columns_) {
-      if (column.role == ColumnRole::kFixed)
-        directions.Give(column.coordinate, Scale(column), column.form);
+      if (column.role == ColumnRole::kFixed) directions.Give(column.coordinate, Scale(column), column.form);
     }
     if (head_) directions.Give(*head_, Scale(*head_, std::nullopt));
     for (const FixedCoordinate& fixed : header_.keys.fixed) {

@@ -123,15 +123,23 @@ constexpr std::array<std::string_view, 55> kIgnored = {"index",
                                                        "background"};
 
 // Short names of angles that mean nothing else.
-constexpr std::array<std::string_view, 16> kAngleShorthands = {"aoi", "aor", "aov", "sza",  "iza",      "saa",    "iaa", "vza",
-                                                               "oza", "vaa", "oaa", "raa",  "dphi",     "dtheta", "dazimuth",
-                                                               "aspecular"};
+constexpr std::array<std::string_view, 16> kAngleShorthands = {"aoi",  "aor",    "aov",      "sza",      "iza", "saa",
+                                                               "iaa",  "vza",    "oza",      "vaa",      "oaa", "raa",
+                                                               "dphi", "dtheta", "dazimuth", "aspecular"};
 
 // "pol", "source polarization", "analyzer angle (deg)": what tells rows of the same directions apart.
 bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {
-  static constexpr std::array<std::string_view, 11> kPolarisation = {
-      "pol",       "polarization", "polarisation", "polarizer", "polariser",      "analyzer",
-      "analyser",  "polarizacion", "polarizzazione", "polarizacao", "polarisationsrichtung"};
+  static constexpr std::array<std::string_view, 11> kPolarisation = {"pol",
+                                                                     "polarization",
+                                                                     "polarisation",
+                                                                     "polarizer",
+                                                                     "polariser",
+                                                                     "analyzer",
+                                                                     "analyser",
+                                                                     "polarizacion",
+                                                                     "polarizzazione",
+                                                                     "polarizacao",
+                                                                     "polarisationsrichtung"};
   static constexpr std::array<std::string_view, 12> kBeside = {"state", "angle",    "orientation", "direction",
                                                                "plane", "position", "setting",     "axis",
                                                                "type",  "of",       "the",         "config"};
@@ -320,8 +328,7 @@ bool LooksLikeAngle(const CsvColumn& column) {
   if (ParseAngleUnit(column.unit)) return true;
   // "dphi [turn]": the words without the unit that is not known are an angle's.
   return std::any_of(split.words.begin(), split.words.end(), [](const std::string& word) {
-    return IsAngleWord(word) || ParseAngleUnit(word).has_value() ||
-           HoldsWord(kAngleShorthands, word);
+    return IsAngleWord(word) || ParseAngleUnit(word).has_value() || HoldsWord(kAngleShorthands, word);
   });
 }
 

@@ -68,12 +68,12 @@ struct CsvColumn {
   bool foreign = false;                         // the name is of another language than English
   std::optional<AngleUnit> angle_unit;          // stated by the name
   AngleForm form = AngleForm::kPolar;
-  bool reversed = false;                        // theta_i - theta_o instead of theta_o - theta_i
-  bool magnitude = false;                       // |beta - beta0|
-  bool of_viewer = false;                       // kPolarisation: behind the sample, before the detector
-  bool letter_s = false;                        // "theta_s": scattered, or of the sun where theta_v stands beside it
-  std::optional<ValueKind> value_kind;          // implied by the name
-  std::optional<ValueScale> value_scale;        // stated by the name
+  bool reversed = false;                  // theta_i - theta_o instead of theta_o - theta_i
+  bool magnitude = false;                 // |beta - beta0|
+  bool of_viewer = false;                 // kPolarisation: behind the sample, before the detector
+  bool letter_s = false;                  // "theta_s": scattered, or of the sun where theta_v stands beside it
+  std::optional<ValueKind> value_kind;    // implied by the name
+  std::optional<ValueScale> value_scale;  // stated by the name
   std::optional<WavelengthUnit> wavelength_unit;
   std::string channel;  // "R", "550nm"
   double wavelength_nm = 0;

@@ -182,9 +182,9 @@ class HeaderReader {
     for (const char separator : {';', '\t', '|', ',', ' '}) {
       const auto fields = static_cast<std::size_t>(std::count(line.text.begin(), line.text.end(), separator)) + 1;
       if (fields > kMostColumns) {
-        FailAtLine(file_, line.number,
-                   "has " + std::to_string(fields) + " fields; at most " + std::to_string(kMostColumns) +
-                       " columns are read");
+        FailAtLine(
+            file_, line.number,
+            "has " + std::to_string(fields) + " fields; at most " + std::to_string(kMostColumns) + " columns are read");
       }
     }
   }
@@ -273,7 +273,8 @@ class HeaderReader {
                   ? 1
                   : 0;
     }
-    const Fields above = at > 0 && !lines_[at - 1].comment ? SplitFields(lines_[at - 1].text, header_.separator) : Fields();
+    const Fields above =
+        at > 0 && !lines_[at - 1].comment ? SplitFields(lines_[at - 1].text, header_.separator) : Fields();
     // Not a title with its value.
     if (lone > 1 && !above.empty() && std::none_of(above.begin(), above.end(), IsNumeric)) {
       const std::vector<std::string> names = Combined(above, fields);
@@ -361,9 +362,8 @@ class HeaderReader {
 
   // What the numbers that columns are named by are may stand alone above them: "AOI (deg)".
   void TakeHeadAbove(std::size_t names) {
-    const bool numbers = std::any_of(header_.columns.begin(), header_.columns.end(), [](const CsvColumn& column) {
-      return column.role == ColumnRole::kNumber;
-    });
+    const bool numbers = std::any_of(header_.columns.begin(), header_.columns.end(),
+                                     [](const CsvColumn& column) { return column.role == ColumnRole::kNumber; });
     if (!numbers || header_.head_coordinate || names == 0 || lines_[names - 1].comment) return;
     const Fields above = SplitFields(lines_[names - 1].text, header_.separator);
     const auto is_filled = [](std::string_view field) { return !Trim(field).empty(); };

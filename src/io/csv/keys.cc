@@ -131,7 +131,8 @@ bool ReadSentence(std::string_view text, CsvKeys* keys) {
       word.remove_suffix(1);
     while (!word.empty() && (word.front() == '(' || word.front() == '[')) word.remove_prefix(1);
   }
-  static constexpr std::array<std::string_view, 6> kAngleWords = {"angles", "angle", "winkel", "angulos", "angoli", "azimuths"};
+  static constexpr std::array<std::string_view, 6> kAngleWords = {"angles",  "angle",  "winkel",
+                                                                  "angulos", "angoli", "azimuths"};
   constexpr std::size_t kMostWords = 12;  // more are a description
   std::optional<AngleUnit> unit;
   bool angles = false;

@@ -102,8 +102,8 @@ class LayoutBuilder {
     }
     // The light's state chosen, f_r is the sum over the detector's, which the average is not.
     if (light_chosen && layout_.polarisations.size() == 1 && columns_[layout_.polarisations[0]].of_viewer) {
-      Fail("--where chooses a polarisation of the light; choose one of " +
-           Quoted(columns_[layout_.polarisations[0]]) + " too");
+      Fail("--where chooses a polarisation of the light; choose one of " + Quoted(columns_[layout_.polarisations[0]]) +
+           " too");
     }
   }
 

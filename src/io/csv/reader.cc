@@ -57,16 +57,19 @@ class CsvReader {
     AddRemarks();
     if (by_wavelength_) {
       Measurement gathered;
-      WithPath([&] { gathered = by_wavelength_->Gather(repeated_ == RepeatedRows::kMean, options_.wavelength_tolerance_nm); });
+      WithPath([&] {
+        gathered = by_wavelength_->Gather(repeated_ == RepeatedRows::kMean, options_.wavelength_tolerance_nm);
+      });
       RequireWhole(gathered);
       for (int r = 0; r < kSetAsideReasons; ++r) {
         const auto reason = static_cast<SetAsideReason>(r);
         gathered.set_aside.Add(reason, builder.measurement().set_aside[reason]);
       }
       if (gathered.channels.size() < by_wavelength_->wavelengths()) {
-        const std::string how = options_.wavelength_tolerance_nm
-                                    ? " wavelengths within " + FormatDouble(*options_.wavelength_tolerance_nm) + " nm are "
-                                    : " wavelengths that wander by less than half of their spacing are ";
+        const std::string how =
+            options_.wavelength_tolerance_nm
+                ? " wavelengths within " + FormatDouble(*options_.wavelength_tolerance_nm) + " nm are "
+                : " wavelengths that wander by less than half of their spacing are ";
         notes_.remarks.push_back(std::to_string(by_wavelength_->wavelengths()) + how +
                                  std::to_string(gathered.channels.size()) + " channel" +
                                  (gathered.channels.size() == 1 ? "" : "s"));
@@ -85,11 +88,12 @@ class CsvReader {
                                       [&](const std::vector<double>& values) { return std::isnan(values[i]); });
       if (whole) return;
     }
-    throw InputError(file_.path.string() + ": " + std::to_string(gathered.channels.size()) +
-                     " different wavelengths, and none of the " + std::to_string(by_wavelength_->pairs()) +
-                     " pairs of directions has all of them; if the wavelength wanders from row to row, "
-                     "--wavelength-tolerance NM makes one channel of those that differ by no more, else choose channels "
-                     "with --channels");
+    throw InputError(
+        file_.path.string() + ": " + std::to_string(gathered.channels.size()) +
+        " different wavelengths, and none of the " + std::to_string(by_wavelength_->pairs()) +
+        " pairs of directions has all of them; if the wavelength wanders from row to row, "
+        "--wavelength-tolerance NM makes one channel of those that differ by no more, else choose channels "
+        "with --channels");
   }
 
   // A turn of the whole sample.
@@ -202,7 +206,8 @@ class CsvReader {
     if (fields.size() != header_.columns.size()) return false;
     std::string storage;
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      const CsvColumn own = ClassifyColumn(header_.columns[i].name), other = ClassifyColumn(Unquoted(fields[i], &storage));
+      const CsvColumn own = ClassifyColumn(header_.columns[i].name),
+                      other = ClassifyColumn(Unquoted(fields[i], &storage));
       const bool same = own.name == other.name ||
                         (own.role != ColumnRole::kUnknown && own.role == other.role && own.unit == other.unit &&
                          own.coordinate == other.coordinate && own.form == other.form && own.channel == other.channel &&

@@ -168,7 +168,7 @@ RowParser::Kind RowParser::Parse(std::string_view line, std::size_t line_number)
 // "Average;37,5;157,5;0,4": a row that a spreadsheet has put below the others.
 bool RowParser::IsSummary(std::string_view line) const {
   static constexpr std::array<std::string_view, 20> kSummaries = {
-      "mean",  "average", "avg", "median", "max",   "maximum",    "min",        "minimum", "sum",    "total",
+      "mean",  "average", "avg", "median", "max",    "maximum",    "min",    "minimum", "sum",     "total",
       "count", "std",     "sd",  "stdev",  "stdev.", "mittelwert", "mittel", "summe",   "moyenne", "media"};
   std::vector<std::string_view> fields;
   SplitCsvLine(line, header_.separator, &fields);

@@ -136,8 +136,8 @@ bool ClassifyWavelengthColumn(const NameList& words, CsvColumn* column) {
                      joined == "comprimento_onda" || joined == "wave_length";
   const bool number = joined == "wavenumber" || joined == "wellenzahl";
   // What is said in THz or eV; without a unit it may be the frequency of a chopper.
-  const bool inverse = (joined == "frequency" || joined == "frequenz" || joined == "photon_energy") &&
-                       ParseWavelengthUnit(column->unit);
+  const bool inverse =
+      (joined == "frequency" || joined == "frequenz" || joined == "photon_energy") && ParseWavelengthUnit(column->unit);
   if (!known && !number && !inverse) return false;
   column->role = ColumnRole::kWavelength;
   if (number && column->unit.empty()) column->unit = "cm^-1";
@@ -172,7 +172,11 @@ bool ClassifyChannel(NameList words, CsvColumn* column) {
 // "U (k=2)", "2 sigma", "relative uncertainty", "u_rel": how far a number of uncertainty is from a standard deviation.
 bool ClassifySpread(const NameWords& name, CsvColumn* column) {
   NameList rest;
-  bool spread = false, expanded = name.function == "U", standard = name.function == "u" || name.function == "s";
+  // "U_BRDF" is the expanded one beside "u_BRDF", as the GUM writes them.
+  const bool letter =
+      column->name.size() > 1 && column->name[0] == 'U' && (column->name[1] == '_' || column->name[1] == ' ');
+  bool spread = false, expanded = name.function == "U" || letter,
+       standard = name.function == "u" || name.function == "s";
   for (std::size_t i = 0; i < name.words.size(); ++i) {
     const std::string& word = name.words[i];
     const bool last_number = word.size() == 1 && word[0] >= '1' && word[0] <= '9';

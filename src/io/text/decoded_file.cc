@@ -38,8 +38,8 @@ std::string Convert(std::string_view bytes, const char* from, const std::filesys
       continue;
     }
     iconv_close(converter);
-    throw InputError(path.string() + ": byte " + std::to_string(bytes.size() - left) + ": is neither UTF-8 nor " + name +
-                     " text; save it as UTF-8");
+    throw InputError(path.string() + ": byte " + std::to_string(bytes.size() - left) + ": is neither UTF-8 nor " +
+                     name + " text; save it as UTF-8");
   }
   iconv_close(converter);
   text.resize(used);

@@ -114,7 +114,7 @@ std::optional<double> Factor(std::string_view unit, std::string_view* rest) {
 
 bool IsPerSteradian(std::string_view unit) {
   static constexpr std::array<std::string_view, 15> kSpellings = {
-      "1/sr",    "/sr",   "sr^-1",       "sr-1",         "sr^(-1)",      "sr**-1",           "persr",   "1/ster",
+      "1/sr",    "/sr",   "sr^-1",       "sr-1",         "sr^(-1)",      "sr**-1",           "persr",    "1/ster",
       "ster^-1", "invsr", "1/steradian", "persteradian", "steradian^-1", "inversesteradian", "inversesr"};
   return std::find(kSpellings.begin(), kSpellings.end(), unit) != kSpellings.end();
 }

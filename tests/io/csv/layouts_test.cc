@@ -180,7 +180,8 @@ TEST(CsvLayouts, PolarisationOfTheLightAndOfTheViewer) {
 TEST(CsvLayouts, TwoPolarisationsInColumnsAreAsked) {
   for (const char* names : {"BRDF_s,BRDF_p", "f_s,f_p"}) {
     const std::string text = "theta_i,theta_o,dphi," + std::string(names) + "\n10,20,0,1,2\n";
-    EXPECT_NE(MessageOf(text).find("are two polarisations; choose one with --value-column"), std::string::npos) << names;
+    EXPECT_NE(MessageOf(text).find("are two polarisations; choose one with --value-column"), std::string::npos)
+        << names;
   }
   EXPECT_EQ(ReadText("theta_i,theta_o,dphi,f_s\n10,20,0,1\n").samples.size(), 1U);
 }

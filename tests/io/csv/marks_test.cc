@@ -156,7 +156,8 @@ TEST(CsvLimits, ColumnsWavelengthsAndLines) {
                 .find("line 3: has 5242880 bytes; at most 4194304 are read"),
             std::string::npos);
   std::string wander = "theta_i,theta_o,wavelength_nm,brdf\n";
-  for (int i = 0; i < 5000; ++i) wander += "10," + std::to_string(i % 80) + "," + std::to_string(400 + 0.1 * i) + ",1\n";
+  for (int i = 0; i < 5000; ++i)
+    wander += "10," + std::to_string(i % 80) + "," + std::to_string(400 + 0.1 * i) + ",1\n";
   EXPECT_NE(MessageOf(wander).find("5000 different wavelengths at 80 pairs of directions; at most 4096"),
             std::string::npos);
 }

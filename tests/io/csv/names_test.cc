@@ -235,9 +235,9 @@ TEST(CsvNames, InOtherLanguages) {
                            "infallsvinkel", "kąt padania [°]", "ângulo de incidência (graus)", "úhel dopadu",
                            "угол падения (град)", "入射角(度)", "入射天顶角(°)", "입사각(도)"})
     ExpectCoordinate(name, Coordinate::kThetaI);
-  for (const char* name : {"Beobachtungswinkel [°]", "Ausfallszenit [Grad]", "kijkhoek (°)", "Ángulo de observación (°)",
-                           "Angolo di osservazione [°]", "kąt obserwacji [°]", "угол наблюдения", "受光角(度)",
-                           "观测天顶角(°)", "反射角", "반사각(도)"})
+  for (const char* name : {"Beobachtungswinkel [°]", "Ausfallszenit [Grad]", "kijkhoek (°)",
+                           "Ángulo de observación (°)", "Angolo di osservazione [°]", "kąt obserwacji [°]",
+                           "угол наблюдения", "受光角(度)", "观测天顶角(°)", "反射角", "반사각(도)"})
     ExpectCoordinate(name, Coordinate::kThetaO);
   for (const char* name : {"Azimutdifferenz [°]", "azimutverschil", "Azimut relativo", "azymut względny [°]",
                            "относительный азимут (град)", "方位角差(度)", "相对方位角(°)"})
@@ -271,8 +271,9 @@ TEST(CsvNames, UnitsThatHaveSignsOfTheirOwn) {
 }
 
 TEST(CsvNames, AnUnknownUnitOfAnAngleIsNotPassedOver) {
-  EXPECT_NE(MessageOf("theta_i,theta_o,dphi [turn],brdf\n10,20,0.5,1\n").find("'dphi [turn]', which speaks of an angle"),
-            std::string::npos);
+  EXPECT_NE(
+      MessageOf("theta_i,theta_o,dphi [turn],brdf\n10,20,0.5,1\n").find("'dphi [turn]', which speaks of an angle"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -106,7 +106,8 @@ TEST(Spreadsheets, NumbersAsFortranAndPeopleWriteThem) {
 }
 
 TEST(Spreadsheets, TheNamesAgainInAnotherSpelling) {
-  EXPECT_EQ(ReadText("theta_i,theta_o,dphi,brdf\n10,20,0,1\nTheta_I, Theta_O, dPhi, BRDF\n30,20,0,1\n").samples.size(), 2U);
+  EXPECT_EQ(ReadText("theta_i,theta_o,dphi,brdf\n10,20,0,1\nTheta_I, Theta_O, dPhi, BRDF\n30,20,0,1\n").samples.size(),
+            2U);
   EXPECT_NE(MessageOf("theta_i,theta_o,dphi,brdf\n10,20,0,1\ntheta_o,theta_i,dphi,brdf\n30,20,0,1\n")
                 .find("line 3: column 1 (theta_i) is 'theta_o'"),
             std::string::npos);

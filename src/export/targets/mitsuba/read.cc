@@ -229,7 +229,8 @@ class MitsubaReader {
         xml_.Fail(child, fmt::format("'{}' of the normal map is not understood; filename and raw are", Excerpt(name)));
       }
     }
-    const std::filesystem::path png = FindMap(file_.path, Named(texture, "filename").attribute("value").value());
+    const std::filesystem::path png =
+        FindMap(file_.path, XmlFile::Unescaped(Named(texture, "filename").attribute("value").value()));
     return RotateZ(NormalOfPng(FileBytes(png).bytes(), 1, png), rotation_);
   }
 

@@ -42,12 +42,12 @@ std::vector<std::string> Notes(const FittedBrdf& fit, const Surface& surface, co
                                bool old_mitsuba) {
   std::vector<std::string> notes;
   if (!maps.empty()) {
-    notes.emplace_back(old_mitsuba
-                           ? "The XML is for Mitsuba 3.0 to 3.7.0: from 3.7.1 on it is darker at grazing angles; export it "
-                             "without --mitsuba-version there. The Python file asks for the version itself."
-                           : "The XML needs Mitsuba 3.7.1 or newer; --mitsuba-version 3.7.0 of the export writes it for "
-                             "3.0 to 3.7.0, which refuse use_shadowing_function. The Python file asks for the version "
-                             "itself.");
+    notes.emplace_back(
+        old_mitsuba ? "The XML is for Mitsuba 3.0 to 3.7.0: from 3.7.1 on it is darker at grazing angles; export it "
+                      "without --mitsuba-version there. The Python file asks for the version itself."
+                    : "The XML needs Mitsuba 3.7.1 or newer; --mitsuba-version 3.7.0 of the export writes it for "
+                      "3.0 to 3.7.0, which refuse use_shadowing_function. The Python file asks for the version "
+                      "itself.");
     notes.push_back(MapComment(maps, "the main scene file, also where this file is included from another folder"));
   }
   if (IsClampedInSpectralVariants(fit, surface)) {
