@@ -18,6 +18,7 @@
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
+#include "lobefit/base/threads.h"
 #include "lobefit/base/version.h"
 
 namespace lobefit {
@@ -102,6 +103,7 @@ int Run(int argc, char** argv) {
     const std::string unknown = UnknownWords(*asked);
     throw UsageError(fmt::format("{}; see `lobefit{} --help`", unknown.empty() ? error.what() : unknown, verb));
   }
+  LimitThreads(common.threads);
   return run();
 }
 

@@ -1,6 +1,8 @@
 // lobefit export: the fitted material as files that renderers load, and what each of them cannot carry.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "maps_export.h"
@@ -17,7 +19,7 @@ namespace lobefit {
 namespace {
 
 struct ExportVerb {
-  std::string material, targets, out = ".", name, map_path, normal_y = "up";
+  std::string material, targets, out = ".", name, map_path, normal_y = "up", mitsuba_version;
   double white = kNan;
   bool refit = false, copy = false, list = false;
 };
@@ -39,6 +41,33 @@ std::vector<const Target*> ParseTargets(const std::string& text) {
   return targets;
 }
 
+// True for 3.0 to 3.7.0.
+bool IsOldMitsuba(const std::string& version) {
+  if (version.empty()) return false;
+  std::vector<long long> parts;
+  for (const std::string_view part : Split(version, '.')) parts.push_back(ParseInteger(part).value_or(-1));
+  const bool valid = parts.size() <= 3 && parts[0] == 3 &&
+                     std::all_of(parts.begin(), parts.end(), [](long long part) { return part >= 0; });
+  if (!valid)
+    throw UsageError(
+        fmt::format("--mitsuba-version {}: a version of Mitsuba 3 is allowed, as in 3.7.0", Excerpt(version)));
+  parts.resize(3, 0);
+  return parts < std::vector<long long>{3, 7, 1};
+}
+
+// An option that none of the targets looks at is a mistake of whoever gave it.
+void RequireUse(const std::vector<const Target*>& targets, const char* option, bool given,
+                const std::function<bool(const Target&)>& uses) {
+  const auto is_used = [&](const Target* target) { return uses(*target); };
+  if (!given || std::any_of(targets.begin(), targets.end(), is_used)) return;
+  std::vector<std::string> names;
+  for (const Target& target : ExportTargets()) {
+    if (uses(target)) names.emplace_back(target.name);
+  }
+  throw UsageError(
+      fmt::format("{} is an option of {}, and none of these is a target; leave it out", option, Join(names)));
+}
+
 int RunExport(const ExportVerb& verb, const CommonOptions& common) {
   if (verb.list) {
     fmt::print("{}", TargetTable());
@@ -50,6 +79,13 @@ int RunExport(const ExportVerb& verb, const CommonOptions& common) {
   }
   ExportOptions options;
   options.targets = ParseTargets(verb.targets);
+  const auto is_mitsuba = [](const Target& target) { return target.name == std::string_view("mitsuba"); };
+  RequireUse(options.targets, "--map-path", !verb.map_path.empty(),
+             [&](const Target& target) { return is_mitsuba(target) || target.name == std::string_view("pbrt"); });
+  RequireUse(options.targets, "--mitsuba-version", !verb.mitsuba_version.empty(), is_mitsuba);
+  RequireUse(options.targets, verb.refit ? "--refit" : "--copy", verb.refit || verb.copy,
+             [](const Target& target) { return target.own_model != nullptr; });
+  options.old_mitsuba = IsOldMitsuba(verb.mitsuba_version);
   options.folder = verb.out;
   options.name = verb.name;
   if (options.name.empty()) {
@@ -102,6 +138,9 @@ std::function<int()> SetUpExport(CLI::App* app, CommonOptions* common) {
                   "of maps whose stack is not calibrated: the albedo in their unit that becomes 1 (default: the 99.5th "
                   "percentile of diffuse + F0)")
       ->check(CLI::PositiveNumber);
+  app->add_option("--mitsuba-version", verb->mitsuba_version,
+                  "write the XML of a tilted material for this version of Mitsuba 3; 3.0 to 3.7.0 refuse a property "
+                  "that newer ones need (default: 3.7.1 and newer)");
   CLI::Option* refit = app->add_flag("--refit", verb->refit,
                                      "fit the target's own model to the fit instead of copying its numbers (default: "
                                      "whichever is nearer)");

@@ -15,6 +15,7 @@
 
 #include "lobefit/base/control_group.h"
 #include "lobefit/base/text.h"
+#include "lobefit/base/threads.h"
 
 namespace lobefit {
 
@@ -55,6 +56,14 @@ struct ThreadPool::State {
   }
 };
 
+namespace {
+
+std::atomic<int> most_threads = 0;
+
+}  // namespace
+
+void LimitThreads(int most) { most_threads = most; }
+
 int HardwareThreads() {
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -65,7 +74,8 @@ int HardwareThreads() {
   const char* slurm = std::getenv("SLURM_CPUS_PER_TASK");
   const std::optional<long long> share = slurm != nullptr ? ParseInteger(slurm) : std::nullopt;
   if (share && *share > 0) threads = std::min(threads, static_cast<double>(*share));
-  return std::max(1, static_cast<int>(threads));
+  const int most = most_threads;
+  return std::max(1, most > 0 ? std::min(most, static_cast<int>(threads)) : static_cast<int>(threads));
 }
 
 ThreadPool::ThreadPool(int threads) : state_(new State) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "lobefit/base/plain_decimal.h"
+#include "lobefit/base/printable.h"
 
 namespace lobefit {
 namespace {
@@ -153,13 +154,13 @@ std::string Join(const std::vector<std::string>& items, std::string_view separat
 }
 
 std::string Excerpt(std::string_view text, std::size_t max_length) {
-  std::string excerpt;
-  for (const char c : text.substr(0, max_length)) {
-    const bool printable = static_cast<unsigned char>(c) >= 0x20 && static_cast<unsigned char>(c) < 0x7f;
-    excerpt += printable ? c : '?';
+  std::size_t length = std::min(max_length, text.size());
+  // Not amid a character, which has four bytes at most.
+  for (int i = 0; i < 3 && length > 0 && length < text.size(); ++i) {
+    if ((static_cast<unsigned char>(text[length]) & 0xc0U) != 0x80U) break;
+    --length;
   }
-  if (text.size() > max_length) excerpt += "...";
-  return excerpt;
+  return Printable(text.substr(0, length)) + (text.size() > max_length ? "..." : "");
 }
 
 std::string FormatDouble(double value) {

@@ -33,7 +33,8 @@ std::string DidYouMean(std::string_view name, const std::vector<std::string>& al
 std::string Hex(std::string_view bytes);
 std::string Join(const std::vector<std::string>& items, std::string_view separator = ", ");
 
-// A piece of the input that is fit to stand in a message: at most `max_length` characters, control characters as '?'.
+// A piece of the input that is fit to stand in a message: at most `max_length` bytes of UTF-8, control characters and
+// bytes that are none as '?'.
 std::string Excerpt(std::string_view text, std::size_t max_length = 40);
 
 // A number of at most 17 significant digits that reads back as the same double; "nan", "inf", "-inf" otherwise.

@@ -164,8 +164,9 @@ ExportResult ExportTo(const Target& target, const Subject& subject, const Export
   const FittedBrdf& fit = refitted ? *refitted : subject.fit;
   result.carries = target.carries(subject.fit);
   CompleteRows(subject, refitted.has_value(), &result.carries);
-  const WrittenFiles written = target.write(
-      fit, {options.folder, options.name, Header(subject.fit.material(), options, result, remarks), options.map_path});
+  const WrittenFiles written =
+      target.write(fit, {options.folder, options.name, Header(subject.fit.material(), options, result, remarks),
+                         options.map_path, options.old_mitsuba});
   if (target.evaluate == nullptr) result.numbers = written.exact ? "exact" : "tabulated";
   Complete(written, *subject.meter, start, &result);
   return result;
@@ -179,8 +180,8 @@ ExportResult ExportSelTo(const Target& target, const Material& material, const E
   result.load = LoadText(target, options.name);
   result.carries = CarriesSel(material);
   result.numbers = "exact";
-  Complete(target.write_sel(
-               material, {options.folder, options.name, Header(material, options, result, remarks), options.map_path}),
+  Complete(target.write_sel(material, {options.folder, options.name, Header(material, options, result, remarks),
+                                       options.map_path, options.old_mitsuba}),
            meter, start, &result);
   return result;
 }

@@ -25,6 +25,7 @@ struct ExportOptions {
   std::string material_file;     // for the comments
   std::string command;           // likewise
   std::string map_path;          // folder before the names of normal maps in the files, "materials/" or ""
+  bool old_mitsuba = false;      // for Mitsuba 3.0 to 3.7.0
   Numbers numbers = Numbers::kBetter;
   int threads = 1;
 };

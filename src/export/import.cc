@@ -6,10 +6,22 @@
 
 namespace lobefit {
 
+namespace {
+
+constexpr std::size_t kMostText = std::size_t{16} << 20;
+
+}  // namespace
+
 ImportedMaterial ImportMaterial(const std::filesystem::path& path) {
   const FileBytes file(path);
   for (const Target& target : ExportTargets()) {
-    if (target.read != nullptr && target.recognises(file.bytes())) return target.read({path, file.bytes()});
+    if (target.read == nullptr || !target.recognises(file.bytes())) continue;
+    if (target.is_text && file.bytes().size() > kMostText) {
+      throw InputError(path.string() + ": is a file of " + target.name + " of " + std::to_string(file.bytes().size()) +
+                       " bytes; materials of up to " + std::to_string(kMostText) +
+                       " are read: name a file that holds the material without the scene");
+    }
+    return target.read({path, file.bytes()});
   }
   throw InputError(path.string() +
                    ": no material that can be read; allowed are materials of pbrt-v4 (.pbrt), Mitsuba 3 (.xml), "

@@ -1,5 +1,6 @@
 #include "lobefit/io/read.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <future>
@@ -7,6 +8,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/no_value.h"
 #include "lobefit/io/formats.h"
@@ -108,17 +110,43 @@ void MarkNoValues(const std::string& list, Measurement* measurement) {
   samples.Keep(keep);
 }
 
+// Of text that is read line by line; XML and JSON may be one line, and binary files have none.
+void RequireLines(const InputFile& file) {
+  constexpr std::size_t kMostLine = std::size_t{4} << 20;
+  const std::string_view head = Trim(file.bytes.substr(0, 4096));
+  if (file.bytes.size() <= kMostLine || head.empty() || head.front() == '<' || head.front() == '{' ||
+      head.front() == '[' || head.find('\0') != std::string_view::npos)
+    return;
+  std::size_t line = 1;
+  for (std::size_t begin = 0; begin < file.bytes.size(); ++line) {
+    const std::size_t end = std::min(file.bytes.find('\n', begin), file.bytes.size());
+    if (end - begin > kMostLine) {
+      throw InputError(file.path.string() + ": line " + std::to_string(line) + ": has " + std::to_string(end - begin) +
+                       " bytes; at most " + std::to_string(kMostLine) +
+                       " are read: is it text with the ends of its lines lost, or another kind of file?");
+    }
+    begin = end + 1;
+  }
+}
+
 }  // namespace
 
 const Format& RecogniseFormat(const InputFile& file) {
   const std::string wrong_kind = DescribeWrongKind(file.bytes);
   if (!wrong_kind.empty()) throw InputError(file.path.string() + ": " + wrong_kind);
+  RequireLines(file);
   if (file.bytes.empty()) {
     throw InputError(file.path.string() +
                      ": is empty (0 bytes); name a file that holds a measurement. Known formats: " + KnownFormats());
   }
+  const std::string_view begin = Trim(file.bytes.substr(0, 64));
+  const bool json = begin.starts_with('{') || (begin.starts_with('[') && Trim(begin.substr(1)).starts_with('{'));
   for (const Format& format : Formats()) {
-    if (format.recognise(file.bytes)) return format;
+    if (!format.recognise(file.bytes)) continue;
+    if (!json || format.name != std::string_view("csv")) return format;
+    throw InputError(file.path.string() +
+                     ": is JSON of a kind that is not known (read are BRDF files of BiRD and of ASAM OpenMATERIAL 3D); "
+                     "write its rows as CSV with a line of names");
   }
   throw InputError(file.path.string() + ": is not in a format that can be read; it begins with '" +
                    Excerpt(file.bytes.substr(0, file.bytes.find('\n')), 24) + "' and has " +
@@ -134,7 +162,8 @@ Measurement ReadPart(const std::filesystem::path& path, const ReadOptions& optio
   const DecodedFile decoded(path);
   const InputFile file = {path, decoded.bytes()};
   const Format& format = RecogniseFormat(file);
-  const auto policy = decoded.stored().size() >= kHashAsideBytes ? std::launch::async : std::launch::deferred;
+  const bool aside = decoded.stored().size() >= kHashAsideBytes && HardwareThreads() > 1;
+  const auto policy = aside ? std::launch::async : std::launch::deferred;
   std::future<std::string> digest = std::async(policy, [&] { return Sha256Hex(decoded.stored()); });
   Measurement measurement = format.read(file, options);
   measurement.format = format.name;

@@ -214,7 +214,7 @@ class Checks {
         farthest = std::max(farthest, std::acos(std::clamp(Dot(samples_.wi(i), samples_.wo(i)), -1.0, 1.0)));
       }
       if (value == -1 || value == -99 || value == -999 || value == -9999 || value == -99999 || value == -32768 ||
-          value > 1e30 || value < -1e30)
+          std::fabs(value) >= 1e15)
         ++marks[value];
     }
     const std::size_t count = values.size();
@@ -232,7 +232,7 @@ class Checks {
                          ": if that stands for no value, use --no-value " + FormatDouble(value));
     }
     const bool saturated = at_largest >= 5 && 100 * at_largest > count && at_largest > 4 * at_second &&
-                           2 * at_largest < count && largest > 0 && largest < 1e30;
+                           2 * at_largest < count && largest > 0 && largest < 1e15;
     if (saturated) {
       remarks_.push_back(std::to_string(at_largest) + " samples share the largest value, " + FormatDouble(largest) +
                          ": if the detector saturates there, use --exclude \"value>=" + Short(largest * (1 - 1e-3)) +

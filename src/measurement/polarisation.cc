@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <set>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
@@ -28,6 +30,22 @@ void KeepOne(const std::vector<std::uint8_t>& polarisation, std::size_t chosen, 
   measurement->set_aside.Add(SetAsideReason::kOutsideSelection, others);
 }
 
+// "ss", "s-p", "p/s", "p p": the light's and the viewer's, of the same two letters.
+bool AreOfBothSides(const std::vector<std::string>& names) {
+  std::set<std::string> pairs, letters;
+  for (const std::string& name : names) {
+    std::string pair;
+    for (const char c : name) {
+      if (std::isalpha(static_cast<unsigned char>(c)) != 0) pair += c;
+    }
+    if (pair.size() != 2) return false;
+    letters.insert(pair.substr(0, 1));
+    letters.insert(pair.substr(1));
+    pairs.insert(std::move(pair));
+  }
+  return names.size() == 4 && pairs.size() == 4 && letters.size() == 2;
+}
+
 }  // namespace
 
 std::string AverageOverPolarisation(const std::vector<std::uint8_t>& polarisation,
@@ -38,7 +56,7 @@ std::string AverageOverPolarisation(const std::vector<std::uint8_t>& polarisatio
     KeepOne(polarisation, n, measurement);
     return "of the polarisations, that named '" + Excerpt(names[n]) + "' is used";
   }
-  if (names.size() > 2) {
+  if (names.size() > 2 && !AreOfBothSides(names)) {
     std::vector<std::string> some;
     for (std::size_t n = 0; n < std::min<std::size_t>(names.size(), 6); ++n) some.push_back(Excerpt(names[n], 20));
     throw InputError("rows have " + std::to_string(names.size()) + " polarisations (" + Join(some) +
@@ -48,7 +66,7 @@ std::string AverageOverPolarisation(const std::vector<std::uint8_t>& polarisatio
   PairIndex index(samples.size());
   struct Group {
     std::size_t first = 0;
-    std::array<std::size_t, 2> counts = {};
+    std::array<std::size_t, 4> counts = {};
   };
   std::vector<Group> groups;
   std::vector<std::size_t> group_of(samples.size());
@@ -57,7 +75,8 @@ std::string AverageOverPolarisation(const std::vector<std::uint8_t>& polarisatio
     if (group_of[i] == groups.size()) groups.push_back({i, {}});
     ++groups[group_of[i]].counts[polarisation[i]];
   }
-  // Sums over the samples of a pair, each polarisation with half of the weight, gathered at the pair's first sample.
+  // Sums over the samples of a pair, each polarisation with half of the weight (four are the light's two times two
+  // behind the sample), gathered at the pair's first sample.
   const auto average = [&](std::vector<double>* array) {
     std::vector<double> sums(groups.size(), 0);
     for (std::size_t i = 0; i < array->size(); ++i) {
@@ -70,12 +89,17 @@ std::string AverageOverPolarisation(const std::vector<std::uint8_t>& polarisatio
   std::vector<std::uint8_t> keep(samples.size(), 0);
   std::size_t incomplete = 0;
   for (const Group& group : groups) {
-    const bool both = group.counts[0] > 0 && group.counts[1] > 0;
-    keep[group.first] = both ? 1 : 0;
-    incomplete += both ? 0 : 1;
+    const bool all = std::all_of(group.counts.begin(), group.counts.begin() + static_cast<std::ptrdiff_t>(names.size()),
+                                 [](std::size_t count) { return count > 0; });
+    keep[group.first] = all ? 1 : 0;
+    incomplete += all ? 0 : 1;
   }
   samples.Keep(keep);
   measurement->set_aside.Add(SetAsideReason::kHole, incomplete);
+  if (names.size() == 4) {
+    return "half of the sum over the polarisations before and behind the sample (" + Excerpt(Join(names), 40) +
+           ") is f_r of unpolarised light";
+  }
   return "the rows of the polarisations '" + Excerpt(names[0]) + "' and '" + Excerpt(names[1]) +
          "' were averaged to f_r of unpolarised light";
 }

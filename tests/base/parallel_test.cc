@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "lobefit/base/threads.h"
+
 namespace lobefit {
 namespace {
 
@@ -30,6 +32,13 @@ TEST(ThreadPool, HandsOnAnExceptionAndStaysUsable) {
   std::atomic<int> count = 0;
   pool.Run(10, [&](std::size_t) { ++count; });
   EXPECT_EQ(count, 10);
+}
+
+TEST(HardwareThreads, AreLimitedByTheProgram) {
+  LimitThreads(1);
+  EXPECT_EQ(HardwareThreads(), 1);
+  LimitThreads(0);
+  EXPECT_GE(HardwareThreads(), 1);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(BadMaterial, SaysWhatIsWrong) {
       {"Material \"conductor\" \"float roughness\" x \"rgb reflectance\" [1 1 1]", "roughness 'x' is not a number"},
       {"Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\"", "spectra by name are not known"},
       {"Material \"mix\" \"string materials\" [\"a\"]", "a mix needs two materials"},
-      {"MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [\"m\" \"m\"]", "is not defined"},
+      {"MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [\"m\" \"m\"]", "more than 8 deep"},
       {"<scene version=\"3.0.0\"></scene>", "holds no <bsdf>"},
       {"<scene><bsdf type=\"plastic\"/></scene>", "the bsdf 'plastic' is not understood"},
       {"<scene><bsdf type=\"roughconductor\"/></scene>", "the default is beckmann"},

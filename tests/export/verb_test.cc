@@ -60,6 +60,10 @@ TEST_F(ExportVerb, BadUse) {
       {"nothing.material.json --to gltf", 3, "nothing.material.json"},
       {"broken.json --to gltf", 3, "broken.json"},
       {"brushed_metal.material.json --to gltf --copy --refit", 2, "excludes"},
+      {"brushed_metal.material.json --to gltf --map-path maps", 2, "--map-path is an option of mitsuba, pbrt"},
+      {"brushed_metal.material.json --to pbrt --mitsuba-version 3.6", 2, "--mitsuba-version is an option of mitsuba"},
+      {"brushed_metal.material.json --to mitsuba --mitsuba-version 2.1", 2, "a version of Mitsuba 3 is allowed"},
+      {"brushed_metal.material.json --to rgl,csv --refit", 2, "--refit is an option of gltf"},
       {"brushed_metal.material.json --to gltf --name a/b", 2, "is a path; the folder is given by --out"},
       {"brushed_metal.material.json --to gltf --out broken.json/x", 3, "cannot be made"},
   };
@@ -115,6 +119,22 @@ TEST_F(ExportVerb, LoadLinesAndMapPath) {
 }
 
 // A lobe that pbrt would make a mirror of, and a material that gains light.
+TEST_F(ExportVerb, MitsubaBefore371) {
+  // The name ends the string in Python, and the element in XML.
+  const std::string name = R"("a'b<\"&c")";
+  ASSERT_EQ(Shell("lobefit export brushed_metal.material.json --to mitsuba --name " + name).exit_code, 0);
+  EXPECT_THAT(ReadWholeFile(folder_ / "a'b<\"&c.mitsuba.xml"), HasSubstr("use_shadowing_function"));
+  const ProgramResult old =
+      Shell("lobefit export brushed_metal.material.json --to mitsuba --mitsuba-version 3.7.0 --name " + name);
+  ASSERT_EQ(old.exit_code, 0) << old.err;
+  const std::string xml = ReadWholeFile(folder_ / "a'b<\"&c.mitsuba.xml");
+  EXPECT_THAT(xml.substr(xml.find("<scene")), testing::Not(HasSubstr("use_shadowing_function")));
+  EXPECT_THAT(xml, HasSubstr("value=\"a&#39;b&lt;&quot;&amp;c_normal1.png\""));
+  const std::string python = ReadWholeFile(folder_ / "a'b<\"&c.mitsuba.py");
+  EXPECT_THAT(python, HasSubstr(R"(os.path.join(folder, 'a\'b<"&c_normal1.png'))"));
+  EXPECT_EQ(Shell("python3 -m py_compile " + name.substr(0, name.size() - 1) + ".mitsuba.py\"").exit_code, 0);
+}
+
 TEST_F(ExportVerb, NarrowLobesAndCreatedEnergyAreNamed) {
   ASSERT_EQ(Shell("cat > narrow.py <<'END'\n"
                   "import json\n"

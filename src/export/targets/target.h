@@ -44,6 +44,7 @@ struct WriteContext {
   std::string name;                 // of the material; files are NAME and an ending
   std::vector<std::string> header;  // lines of the comment at the top of text files
   std::string map_path;             // folder before the name of a normal map, as the renderer is to look for it
+  bool old_mitsuba = false;         // for Mitsuba 3.0 to 3.7.0
 
   std::filesystem::path File(std::string_view ending) const { return folder / (name + std::string(ending)); }
 };
@@ -78,6 +79,7 @@ struct Target {
   // is not understood: an input that the reader does not evaluate is an error or stands in the remarks.
   bool (*recognises)(std::string_view bytes) = nullptr;
   ImportedMaterial (*read)(const InputFile& file) = nullptr;
+  bool is_text = false;  // a few numbers and names: files beyond 16 MiB are refused before they are read
 };
 
 // A function of R, G, B as one of the fit's channels: itself, or its first channel where the fit is grey.

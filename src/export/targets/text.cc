@@ -1,9 +1,12 @@
 #include "lobefit/export/targets/text.h"
 
+#include <algorithm>
 #include <cctype>
 
 #include <fmt/format.h>
 
+#include "lobefit/base/error.h"
+#include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 
 namespace lobefit {
@@ -28,6 +31,25 @@ std::string Numbers9(const std::vector<double>& values, std::string_view separat
 }
 std::string Numbers9(const Color3& values, std::string_view separator) {
   return Numbers9(ToSpectrum(values), separator);
+}
+
+std::string PythonString(std::string_view text) {
+  std::string literal = "'";
+  while (!text.empty()) {
+    const std::size_t length = Utf8Length(text);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(length, 1));
+    const auto c = static_cast<unsigned char>(character[0]);
+    if (length == 0) {
+      literal += '?';
+    } else if (c < 0x20 || c == 0x7f) {
+      literal += fmt::format("\\x{:02x}", c);
+    } else {
+      if (c == '\'' || c == '\\') literal += '\\';
+      literal += character;
+    }
+    text.remove_prefix(character.size());
+  }
+  return literal + "'";
 }
 
 std::string CommentLines(const std::vector<std::string>& lines, std::string_view mark) {
@@ -63,8 +85,13 @@ std::string MapComment(const std::vector<std::string>& maps, std::string_view be
 }
 
 std::filesystem::path FindMap(const std::filesystem::path& file, const std::string& name) {
-  const std::filesystem::path whole = file.parent_path() / name;
-  return std::filesystem::exists(whole) ? whole : file.parent_path() / std::filesystem::path(name).filename();
+  std::filesystem::path map = file.parent_path() / name;
+  if (!std::filesystem::exists(map)) map = file.parent_path() / std::filesystem::path(name).filename();
+  if (std::filesystem::exists(map) && !std::filesystem::is_regular_file(map)) {
+    throw InputError(PrintableName(file) + ": the normal map '" + PrintableName(map) +
+                     "' is no regular file; name a PNG picture");
+  }
+  return map;
 }
 
 std::string GlslPrefix(const std::string& name) {

@@ -19,6 +19,9 @@ std::string FloatLiteral(double value);
 std::string Numbers9(const std::vector<double>& values, std::string_view separator = " ");
 std::string Numbers9(const Color3& values, std::string_view separator = " ");
 
+// A literal of Python that is `text`, whatever stands in it; bytes that are not UTF-8 become '?'.
+std::string PythonString(std::string_view text);
+
 // Comment lines, each behind `mark`; or as one XML comment, in which two hyphens are set apart.
 std::string CommentLines(const std::vector<std::string>& lines, std::string_view mark);
 std::string XmlComment(const std::vector<std::string>& lines);
@@ -32,7 +35,7 @@ double RotationOfComment(std::string_view text);
 std::string MapComment(const std::vector<std::string>& maps, std::string_view beside);
 
 // The file of a map that a material file names: in that file's folder by the whole name or, where a renderer looks
-// elsewhere, by its last part.
+// elsewhere, by its last part. Throws InputError for what is no regular file, such as a device.
 std::filesystem::path FindMap(const std::filesystem::path& file, const std::string& name);
 
 // Names in GLSL of one material, so that several files make one shader: "lobefit_NAME_"; and the macro by which the

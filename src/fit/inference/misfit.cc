@@ -142,7 +142,17 @@ Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<dou
   std::vector<Eigen::VectorXd> gains;
   std::vector<std::vector<int>> coordinates;
   for (std::size_t c = 0; c < problem.channels(); ++c) coordinates.push_back(layout.CoordinatesOfColumns(c));
-  Eigen::VectorXd row(n), rows(n);
+  // A residual moves with its own channel's coordinates only: their products are few, whatever the number of channels.
+  std::vector<std::pair<Eigen::Index, double>> row;
+  const auto add_to_row = [&](Eigen::Index to, double value) {
+    const auto known = std::find_if(row.begin(), row.end(), [&](const auto& entry) { return entry.first == to; });
+    if (known == row.end()) {
+      row.emplace_back(to, value);
+    } else {
+      known->second += value;
+    }
+  };
+  Eigen::VectorXd rows(n);
   for (std::size_t begin = 0; begin < problem.size(); begin += kPiece * stride) {
     const std::size_t count = std::min(problem.size(), begin + kPiece) - begin;
     evaluator.Evaluate(order, begin, begin + count, &piece);
@@ -155,19 +165,23 @@ Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<dou
       double residual = 0;
       rows.setZero();
       for (std::size_t c = 0; c < coordinates.size(); ++c) {
-        row.setZero();
+        row.clear();
         for (std::size_t j = 0; j < coordinates[c].size(); ++j) {
           const int to = coordinates[c][j] < 0 ? -1 : place[static_cast<std::size_t>(coordinates[c][j])];
-          if (to >= 0) row(to) += piece.rows[c](k, static_cast<Eigen::Index>(j));
+          if (to >= 0) add_to_row(to, piece.rows[c](k, static_cast<Eigen::Index>(j)));
         }
-        if (!by_incidence) row(free + incidence) += gains[c](k);
+        if (!by_incidence) add_to_row(free + incidence, gains[c](k));
         const double r = piece.residuals[c](k);
         residual += r;
         sums.squares += r * r;
         sums.residuals += 1;
-        rows += row;
-        group.score += r * row;
-        sums.hessian.selfadjointView<Eigen::Upper>().rankUpdate(row);
+        for (const auto& [to, value] : row) {
+          rows(to) += value;
+          group.score(to) += r * value;
+          for (const auto& [other, factor] : row) {
+            if (to <= other) sums.hessian(to, other) += value * factor;
+          }
+        }
       }
       for (const std::size_t bin :
            BinsOf(kernel.lobes.front().shape.slope, samples.wi(begin + i), samples.wo(begin + i))) {

@@ -126,7 +126,6 @@ bool IsAstm(std::string_view bytes) {
     const std::vector<std::string_view> words = SplitBlanks(line);
     if (!words.empty() && words[0] == "VARS") return true;
     if (!words.empty() && (words[0] == "NUM_POINTS" || words[0] == "LAB_NAME" || words[0] == "MEAS_NAME")) return true;
-    if (!words.empty() && words[0][0] == '#') return false;
   }
   return false;
 }

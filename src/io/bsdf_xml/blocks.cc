@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "lobefit/base/text.h"
 #include "lobefit/io/text/place.h"
@@ -21,20 +22,23 @@ std::optional<double> Nanometres(const XmlFile& xml, pugi::xml_node wavelength) 
 
 // Blocks by lower-case name of the direction ("reflection front").
 std::map<std::string, std::vector<XmlBlock>> ReadBlocks(const XmlFile& xml, pugi::xml_node layer) {
+  constexpr std::size_t kMostBlocks = 4096;
   std::map<std::string, std::vector<XmlBlock>> by_direction;
+  std::map<std::pair<std::string, std::string>, pugi::xml_node> known;
   for (const pugi::xml_node data : layer.children("WavelengthData")) {
     const pugi::xml_node wavelength = xml.OnlyChild(data, "Wavelength");
     for (const pugi::xml_node element : data.children("WavelengthDataBlock")) {
       XmlBlock block = {std::string(xml.Text(wavelength)), Nanometres(xml, wavelength), element};
-      std::vector<XmlBlock>& blocks =
-          by_direction[ToLower(xml.Text(xml.OnlyChild(element, "WavelengthDataDirection")))];
-      for (const XmlBlock& other : blocks) {
-        if (ToLower(other.wavelength) == ToLower(block.wavelength)) {
-          xml.Fail(element, "a second block of the same direction and wavelength '" + Excerpt(block.wavelength) +
-                                "'; the first one is in line " + std::to_string(xml.Line(other.element)));
-        }
+      const std::string direction = ToLower(xml.Text(xml.OnlyChild(element, "WavelengthDataDirection")));
+      const auto [first, is_new] = known.emplace(std::pair(direction, ToLower(block.wavelength)), element);
+      if (!is_new) {
+        xml.Fail(element, "a second block of the same direction and wavelength '" + Excerpt(block.wavelength) +
+                              "'; the first one is in line " + std::to_string(xml.Line(first->second)));
       }
-      blocks.push_back(std::move(block));
+      if (known.size() > kMostBlocks)
+        xml.Fail(element, "is block " + std::to_string(known.size()) + "; at most " + std::to_string(kMostBlocks) +
+                              " blocks of wavelengths are read");
+      by_direction[direction].push_back(std::move(block));
     }
   }
   return by_direction;

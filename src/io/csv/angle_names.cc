@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<std::string_view, 9> kPolar = {"theta",       "th",         "polar", "zenith",  "zen",
                                                     "inclination", "colatitude", "tht",   "vartheta"};
-constexpr std::array<std::string_view, 4> kElevation = {"elevation", "elev", "altitude", "grazing"};
+constexpr std::array<std::string_view, 5> kElevation = {"elevation", "elev", "el", "altitude", "grazing"};
 constexpr std::array<std::string_view, 11> kAzimuthal = {"phi", "ph",     "azimuth",  "azimuthal", "azim",  "az",
                                                          "azi", "azimut", "azimutal", "varphi",    "acimut"};
 constexpr std::array<std::string_view, 8> kAngle = {"angle",  "angles", "winkel",    "angulo",
@@ -40,6 +40,10 @@ void SetCoordinate(Coordinate coordinate, CsvColumn* column) {
   column->coordinate = coordinate;
 }
 
+AngleForm FormOf(std::size_t elevations, std::size_t cosines) {
+  return cosines > 0 ? AngleForm::kCosine : elevations > 0 ? AngleForm::kElevation : AngleForm::kPolar;
+}
+
 }  // namespace
 
 // "wi_x", "in.y", "lz": a component of a direction.
@@ -65,7 +69,7 @@ bool ClassifyComponent(const NameList& words, CsvColumn* column) {
 // Angles by what kind of angle the words speak of, and of which direction.
 bool ClassifyAngle(const NameList& words, bool magnitude, CsvColumn* column) {
   std::size_t polar = 0, azimuthal = 0, lights = 0, viewers = 0, angles = 0, others = 0, elevations = 0, relatives = 0,
-              sines = 0, speculars = 0;
+              sines = 0, cosines = 0, speculars = 0;
   bool light_first = false;
   for (const std::string& word : words) {
     if (HoldsWord(kPolar, word)) {
@@ -81,8 +85,13 @@ bool ClassifyAngle(const NameList& words, bool magnitude, CsvColumn* column) {
       if (polar + azimuthal + angles == 0) return false;
       SetCoordinate(azimuthal > 0 ? Coordinate::kPhiH : Coordinate::kThetaH, column);
       return true;
-    } else if (word == "sin") {
+    } else if (word == "sin" || word == "sine") {
       ++sines;
+    } else if (word == "cos" || word == "cosine") {
+      ++cosines;
+    } else if (word == "mu") {
+      ++polar;
+      ++cosines;
     } else if (word == "specular" || word == "spec" || word == "mirror") {
       ++speculars;
     } else if (HoldsWord(kLight, word)) {
@@ -100,6 +109,9 @@ bool ClassifyAngle(const NameList& words, bool magnitude, CsvColumn* column) {
     }
   }
   if (others > 0) return false;
+  if (cosines > 0 && (cosines > 1 || azimuthal + elevations + sines + relatives + speculars > 0 ||
+                      polar + angles == 0 || (lights > 0 && viewers > 0)))
+    return false;
   const std::size_t kinds = (polar > 0) + (azimuthal > 0) + (elevations > 0);
   if (speculars > 0) {
     if (azimuthal + elevations > 0) return false;
@@ -145,7 +157,7 @@ bool ClassifyAngle(const NameList& words, bool magnitude, CsvColumn* column) {
       SetCoordinate(Coordinate::kPhi, column);
     } else if (polar + elevations > 0 || (angles > 0 && words.size() == angles)) {
       SetCoordinate(Coordinate::kTheta, column);
-      column->from_horizon = elevations > 0;
+      column->form = FormOf(elevations, cosines);
     } else {
       return false;
     }
@@ -153,12 +165,15 @@ bool ClassifyAngle(const NameList& words, bool magnitude, CsvColumn* column) {
   }
   if (kinds + angles == 0) return false;
   const bool light = lights > 0;
-  column->from_horizon = elevations > 0;
+  column->form = FormOf(elevations, cosines);
   SetCoordinate(azimuthal > 0 ? (light ? Coordinate::kPhiI : Coordinate::kPhiO)
                               : (light ? Coordinate::kThetaI : Coordinate::kThetaO),
                 column);
   return true;
 }
+
+bool IsLightWord(std::string_view word) { return HoldsWord(kLight, word); }
+bool IsViewerWord(std::string_view word) { return HoldsWord(kViewer, word); }
 
 bool IsAngleWord(std::string_view word) {
   return HoldsWord(kPolar, word) || HoldsWord(kElevation, word) || HoldsWord(kAzimuthal, word) ||

@@ -28,6 +28,7 @@ class AngleFinder {
         head_(header.head_coordinate) {}
 
   void Find() {
+    DropCosines();
     ChooseUnit();
     ResolveLetters();
     ResolveDifferences();
@@ -86,6 +87,9 @@ class AngleFinder {
     notes_.conventions["angle-unit"] = by_name ? "by column names" : Name(default_unit_) + " (" + origin + ")";
   }
 
+  double Scale(const CsvColumn& column) const {
+    return column.form == AngleForm::kCosine ? 1 : Scale(column.coordinate, column.angle_unit);
+  }
   double Scale(C coordinate, const std::optional<AngleUnit>& own) const {
     if (IsSine(coordinate) || IsComponent(coordinate)) return 1;
     return RadiansPerUnit(own && !options_.angle_unit ? *own : default_unit_);
@@ -150,7 +154,8 @@ class AngleFinder {
   double Angle(const std::vector<std::string>& row, const CsvColumn* column) const {
     const auto at = static_cast<std::size_t>(column - columns_.data());
     const std::optional<double> number = at < row.size() ? ParseCsvNumber(row[at], header_.decimal_mark) : std::nullopt;
-    return number ? *number * Scale(column->coordinate, column->angle_unit) : std::nan("");
+    if (number && column->form == AngleForm::kCosine) return std::acos(*number);
+    return number ? *number * Scale(*column) : std::nan("");
   }
 
   // Planetary files hold incidence, emission, the azimuth between them and the phase angle, which follows from those.
@@ -184,6 +189,19 @@ class AngleFinder {
     }
   }
 
+  // Cosines beside the angles that they are of, or beside directions that hold them.
+  void DropCosines() {
+    for (CsvColumn& column : columns_) {
+      if (column.role != ColumnRole::kCoordinate || column.form != AngleForm::kCosine) continue;
+      const bool beside = std::any_of(columns_.begin(), columns_.end(), [&](const CsvColumn& other) {
+        return other.role == ColumnRole::kCoordinate && other.form != AngleForm::kCosine &&
+               (other.coordinate == column.coordinate || other.coordinate == C::kThetaH || other.coordinate == C::kWiX);
+      });
+      if (beside || header_.keys.Find(column.coordinate) != nullptr || InNames(column.coordinate))
+        column.role = ColumnRole::kIgnored;
+    }
+  }
+
   // Offsets from the mirror direction and phase angles beside what they follow from.
   void DropRedundant() {
     for (CsvColumn& column : columns_) {
@@ -214,19 +232,18 @@ class AngleFinder {
           Fail("the columns " + Quoted(columns_[other]) + " and " + Quoted(column) +
                " mean the same; remove one of them");
       }
-      directions.Give(column.coordinate, Scale(column.coordinate, column.angle_unit), column.from_horizon);
+      directions.Give(column.coordinate, Scale(column), column.form);
       if (column.coordinate == C::kFromSpecular || column.coordinate == C::kBetaOffset)
         directions.SetOffset(column.reversed, column.magnitude);
       layout_.coordinates.emplace_back(column.coordinate, i);
     }
     for (const CsvColumn& column : columns_) {
-      if (column.role == ColumnRole::kFixed)
-        directions.Give(column.coordinate, Scale(column.coordinate, column.angle_unit), column.from_horizon);
+      if (column.role == ColumnRole::kFixed) directions.Give(column.coordinate, Scale(column), column.form);
     }
     if (head_) directions.Give(*head_, Scale(*head_, std::nullopt));
     for (const FixedCoordinate& fixed : header_.keys.fixed) {
       if (directions.Has(fixed.coordinate)) continue;
-      directions.Give(fixed.coordinate, Scale(fixed.coordinate, fixed.unit), fixed.from_horizon);
+      directions.Give(fixed.coordinate, Scale(fixed.coordinate, fixed.unit), fixed.form);
       layout_.fixed[static_cast<std::size_t>(fixed.coordinate)] = fixed.number;
     }
     if (directions.Has(C::kPhiO) && directions.Has(C::kDeltaPhi))
@@ -240,6 +257,15 @@ class AngleFinder {
       for (const CsvColumn& column : columns_) names.push_back(Excerpt(column.name));
       Fail("no column holds " + missing + "; the columns are " + Excerpt(Join(names), 200) +
            "; allowed: " + AllowedColumns());
+    }
+    const auto alpha = std::find_if(columns_.begin(), columns_.end(), [](const CsvColumn& column) {
+      const NameWords name = SplitName(column.name);
+      return column.role == ColumnRole::kUnknown && !name.words.empty() && name.words[0] == "alpha";
+    });
+    if (directions.Has(C::kBeta) && alpha != columns_.end()) {
+      Fail(Quoted(*alpha) + " and " + Quoted(*Column(C::kBeta)) +
+           " are two direction cosines of which the axes are not said; write wi_x ... wo_z or polar angles and "
+           "azimuths");
     }
     if (Column(C::kTheta) != nullptr || Column(C::kPhi) != nullptr) {
       const CsvColumn& column = *(Column(C::kTheta) != nullptr ? Column(C::kTheta) : Column(C::kPhi));

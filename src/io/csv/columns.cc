@@ -16,7 +16,7 @@ struct Synonym {
   ColumnRole role;
   Coordinate coordinate = Coordinate::kThetaI;
 };
-constexpr std::array<Synonym, 52> kSynonyms = {{
+constexpr std::array<Synonym, 47> kSynonyms = {{
     {"aoi", ColumnRole::kCoordinate, Coordinate::kThetaI},
     {"incidence", ColumnRole::kCoordinate, Coordinate::kThetaI},
     {"incident", ColumnRole::kCoordinate, Coordinate::kThetaI},
@@ -63,15 +63,10 @@ constexpr std::array<Synonym, 52> kSynonyms = {{
     {"stage_rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
     {"weight", ColumnRole::kWeight},
     {"weights", ColumnRole::kWeight},
-    {"pol", ColumnRole::kPolarisation},
-    {"polarization", ColumnRole::kPolarisation},
-    {"polarisation", ColumnRole::kPolarisation},
     {"fr_authors_formula", ColumnRole::kOtherValue},
-    {"polarization_state", ColumnRole::kPolarisation},
-    {"polarisation_state", ColumnRole::kPolarisation},
 }};
 
-constexpr std::array<std::string_view, 57> kIgnored = {"index",
+constexpr std::array<std::string_view, 55> kIgnored = {"index",
                                                        "id",
                                                        "no",
                                                        "nr",
@@ -125,9 +120,41 @@ constexpr std::array<std::string_view, 57> kIgnored = {"index",
                                                        "unnamed_0",
                                                        "voltage",
                                                        "current",
-                                                       "cos_theta_i",
-                                                       "cos_theta_o",
                                                        "background"};
+
+// Short names of angles that mean nothing else.
+constexpr std::array<std::string_view, 16> kAngleShorthands = {"aoi",  "aor",    "aov",      "sza",      "iza", "saa",
+                                                               "iaa",  "vza",    "oza",      "vaa",      "oaa", "raa",
+                                                               "dphi", "dtheta", "dazimuth", "aspecular"};
+
+// "pol", "source polarization", "analyzer angle (deg)": what tells rows of the same directions apart.
+bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {
+  static constexpr std::array<std::string_view, 11> kPolarisation = {"pol",
+                                                                     "polarization",
+                                                                     "polarisation",
+                                                                     "polarizer",
+                                                                     "polariser",
+                                                                     "analyzer",
+                                                                     "analyser",
+                                                                     "polarizacion",
+                                                                     "polarizzazione",
+                                                                     "polarizacao",
+                                                                     "polarisationsrichtung"};
+  static constexpr std::array<std::string_view, 12> kBeside = {"state", "angle",    "orientation", "direction",
+                                                               "plane", "position", "setting",     "axis",
+                                                               "type",  "of",       "the",         "config"};
+  bool polarisation = false, viewer = false, value = false;
+  for (const std::string& word : words) {
+    const bool names_it = HoldsWord(kPolarisation, word);
+    polarisation = polarisation || names_it;
+    viewer = viewer || word == "analyzer" || word == "analyser" || IsViewerWord(word);
+    value = value || !(names_it || HoldsWord(kBeside, word) || IsViewerWord(word) || IsLightWord(word));
+  }
+  if (!polarisation || value) return false;
+  column->role = ColumnRole::kPolarisation;
+  column->of_viewer = viewer;
+  return true;
+}
 
 bool IsValueWord(const std::string& word) {
   std::optional<ValueKind> kind;
@@ -171,7 +198,7 @@ bool ClassifyFixed(const NameList& words, CsvColumn* column) {
   if (left.role != ColumnRole::kCoordinate) return false;
   column->role = ColumnRole::kFixed;
   column->coordinate = left.coordinate;
-  column->from_horizon = left.from_horizon;
+  column->form = left.form;
   column->letter_s = left.letter_s;
   column->angle_unit = ParseAngleUnit(unit);
   return true;
@@ -187,7 +214,8 @@ void ParseUnit(CsvColumn* column) {
   switch (column->role) {
     case ColumnRole::kCoordinate:
     case ColumnRole::kFixed: {
-      const bool cosine = column->coordinate >= Coordinate::kWiX && column->coordinate <= Coordinate::kWoZ;
+      const bool cosine = (column->coordinate >= Coordinate::kWiX && column->coordinate <= Coordinate::kWoZ) ||
+                          column->form == AngleForm::kCosine;
       const bool sine = column->coordinate == Coordinate::kBeta || column->coordinate == Coordinate::kBeta0 ||
                         column->coordinate == Coordinate::kBetaOffset;
       if (cosine || sine) break;
@@ -199,7 +227,7 @@ void ParseUnit(CsvColumn* column) {
     }
     case ColumnRole::kWavelength:
       column->wavelength_unit = ParseWavelengthUnit(unit);
-      if (!column->wavelength_unit) refuse("nm, um, mm, m, A, cm^-1, eV, THz");
+      if (!column->wavelength_unit) refuse("nm, um, mm, m, A, cm^-1, eV, THz, GHz");
       break;
     case ColumnRole::kValue:
     case ColumnRole::kOtherValue:
@@ -232,6 +260,7 @@ CsvColumn ClassifyColumn(std::string_view name) {
   NameWords split = SplitName(name);
   if (split.words.size() > 12) return column;
   column.unit = split.unit;
+  column.foreign = split.foreign;
   // A unit amid the words: "theta (deg) incident".
   if (column.unit.empty()) {
     const auto unit = std::find_if(split.words.begin(), split.words.end(),
@@ -265,6 +294,7 @@ CsvColumn ClassifyColumn(std::string_view name) {
     column.magnitude = split.magnitude;
   } else if (attempt([&](CsvColumn* c) { return ClassifyValue(split, c); })) {
   } else if (attempt([&](CsvColumn* c) { return ClassifySpread(split, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyPolarisation(split.words, c); })) {
   } else if (plain && attempt([&](CsvColumn* c) {
                return ClassifyChannel(split.words, c) && (c->role = ColumnRole::kChannel, true);
              })) {
@@ -288,6 +318,7 @@ void SetUnit(std::string_view unit, CsvColumn* column) {
   if (text.size() > 1 && (text.front() == '(' || text.front() == '[') && (text.back() == ')' || text.back() == ']'))
     text = text.substr(1, text.size() - 2);
   column->unit = PlainUnit(text);
+  if (column->foreign && column->unit == "grad") column->unit = "deg";
   ParseUnit(column);
 }
 
@@ -295,8 +326,10 @@ bool LooksLikeAngle(const CsvColumn& column) {
   if (column.role != ColumnRole::kUnknown) return false;
   const NameWords split = SplitName(column.name);
   if (ParseAngleUnit(column.unit)) return true;
-  return std::any_of(split.words.begin(), split.words.end(),
-                     [](const std::string& word) { return IsAngleWord(word) || ParseAngleUnit(word).has_value(); });
+  // "dphi [turn]": the words without the unit that is not known are an angle's.
+  return std::any_of(split.words.begin(), split.words.end(), [](const std::string& word) {
+    return IsAngleWord(word) || ParseAngleUnit(word).has_value() || HoldsWord(kAngleShorthands, word);
+  });
 }
 
 std::string AllowedColumns() {

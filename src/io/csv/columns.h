@@ -41,6 +41,9 @@ enum class Coordinate : std::uint8_t {
 };
 inline constexpr std::size_t kCoordinates = static_cast<std::size_t>(Coordinate::kPhi) + 1;
 
+// How a number gives a polar angle: itself, as 90 degrees less the angle above the surface, or by its cosine.
+enum class AngleForm : std::uint8_t { kPolar, kElevation, kCosine };
+
 enum class ColumnRole {
   kCoordinate,
   kWavelength,  // one row a wavelength
@@ -62,13 +65,15 @@ struct CsvColumn {
   Coordinate coordinate = Coordinate::kThetaI;  // kCoordinate and kFixed
   double fixed = 0;                             // kFixed, kNumber: the number of the name
   std::string unit;                             // as written in the name or in a row of units
+  bool foreign = false;                         // the name is of another language than English
   std::optional<AngleUnit> angle_unit;          // stated by the name
-  bool from_horizon = false;                    // an elevation: 90 degrees minus the polar angle
-  bool reversed = false;                        // theta_i - theta_o instead of theta_o - theta_i
-  bool magnitude = false;                       // |beta - beta0|
-  bool letter_s = false;                        // "theta_s": scattered, or of the sun where theta_v stands beside it
-  std::optional<ValueKind> value_kind;          // implied by the name
-  std::optional<ValueScale> value_scale;        // stated by the name
+  AngleForm form = AngleForm::kPolar;
+  bool reversed = false;                  // theta_i - theta_o instead of theta_o - theta_i
+  bool magnitude = false;                 // |beta - beta0|
+  bool of_viewer = false;                 // kPolarisation: behind the sample, before the detector
+  bool letter_s = false;                  // "theta_s": scattered, or of the sun where theta_v stands beside it
+  std::optional<ValueKind> value_kind;    // implied by the name
+  std::optional<ValueScale> value_scale;  // stated by the name
   std::optional<WavelengthUnit> wavelength_unit;
   std::string channel;  // "R", "550nm"
   double wavelength_nm = 0;

@@ -19,16 +19,21 @@ bool IsFinite(const Vec3& w) { return std::isfinite(w.x + w.y + w.z); }
 void DirectionReader::Angle::Set(double number) {
   if (number == last) return;
   last = number;
-  const double radians = from_horizon ? kPi / 2 - number * scale : number * scale;
+  if (form == AngleForm::kCosine) {
+    cos = number;
+    sin = std::sqrt(1 - number * number);  // NaN for what is no cosine: the row cannot be used
+    return;
+  }
+  const double radians = form == AngleForm::kElevation ? kPi / 2 - number * scale : number * scale;
   sin = std::sin(radians);
   cos = std::cos(radians);
 }
 
-void DirectionReader::Give(Coordinate coordinate, double radians_per_unit, bool from_horizon) {
+void DirectionReader::Give(Coordinate coordinate, double radians_per_unit, AngleForm form) {
   Angle& angle = angles_[static_cast<std::size_t>(coordinate)];
   angle.given = true;
   angle.scale = radians_per_unit;
-  angle.from_horizon = from_horizon;
+  angle.form = form;
   angle.last = std::nan("");  // equal to nothing: the first number is taken
 }
 

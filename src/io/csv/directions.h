@@ -22,8 +22,8 @@ using Coordinates = std::array<double, kCoordinates>;
 // How a file's numbers become directions. The numbers that are not `given` are not read.
 class DirectionReader {
  public:
-  // A coordinate of the file, in radians per unit (1 for sines and components); an elevation counts from the horizon.
-  void Give(Coordinate coordinate, double radians_per_unit, bool from_horizon = false);
+  // A coordinate of the file, in radians per unit (1 for sines, cosines and components).
+  void Give(Coordinate coordinate, double radians_per_unit, AngleForm form = AngleForm::kPolar);
   double RadiansPerUnit(Coordinate coordinate) const { return angles_[static_cast<std::size_t>(coordinate)].scale; }
   bool Has(Coordinate coordinate) const { return angles_[static_cast<std::size_t>(coordinate)].given; }
   // theta_i - theta_o instead of theta_o - theta_i; an offset of which the sign is not known, taken towards the normal.
@@ -44,7 +44,7 @@ class DirectionReader {
   // Sine and cosine; rows of a goniometer repeat their angles, so the last one is kept.
   struct Angle {
     bool given = false;
-    bool from_horizon = false;
+    AngleForm form = AngleForm::kPolar;
     double scale = 1;
     double last = 0, sin = 0, cos = 1;
     void Set(double number);

@@ -16,6 +16,7 @@ namespace {
 using Fields = std::vector<std::string_view>;
 
 // A head is looked for in so much of the file.
+constexpr std::size_t kMostColumns = 65536;
 constexpr std::size_t kHeadLines = 400, kHeadBytes = std::size_t{1} << 20, kFirstRows = 60;
 
 struct Line {
@@ -46,10 +47,19 @@ bool HasThousandsSeparator(std::string_view field) {
   return field.find_first_not_of("+-0123456789.,") == std::string_view::npos;
 }
 
-bool IsNumeric(std::string_view field, char separator) {
+// Between commas a number may have one of its own within quotes.
+bool IsNumeric(std::string_view field) {
   std::string storage;
   field = Unquoted(field, &storage);
-  return ParseDouble(field) || (separator != ',' && (HasDecimalComma(field) || HasThousandsSeparator(field)));
+  return ParseCsvNumber(field, '.') || HasDecimalComma(field) || HasThousandsSeparator(field);
+}
+
+// "Date: 12", which a comma may split from what follows.
+bool IsKeyed(std::string_view field) {
+  const std::size_t mark = field.find_first_of(":=");
+  return mark != std::string_view::npos && mark > 0 &&
+         std::any_of(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(mark),
+                     [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
 }
 
 bool NamesAnything(std::string_view field) {
@@ -60,10 +70,10 @@ bool NamesAnything(std::string_view field) {
 }
 
 // At least two numbers, at least as many of them as of anything else, and no name of a column.
-bool IsData(const Fields& fields, char separator) {
+bool IsData(const Fields& fields) {
   std::size_t numbers = 0, others = 0;
   for (const std::string_view field : fields) {
-    if (IsNumeric(field, separator)) {
+    if (IsNumeric(field)) {
       ++numbers;
     } else if (!Trim(field).empty()) {
       ++others;
@@ -71,7 +81,7 @@ bool IsData(const Fields& fields, char separator) {
   }
   if (numbers < 2 || numbers < others) return false;
   return others == 0 || std::none_of(fields.begin(), fields.end(), [&](std::string_view field) {
-           return !IsNumeric(field, separator) && !Trim(field).empty() && NamesAnything(field);
+           return !IsNumeric(field) && !Trim(field).empty() && (IsKeyed(field) || NamesAnything(field));
          });
 }
 
@@ -162,6 +172,20 @@ class HeaderReader {
         continue;
       }
       lines_.push_back({lines.line_number(), text, IsComment(text)});
+      if (!lines_.back().comment) CheckColumns(lines_.back());
+    }
+  }
+
+  // Before any name is looked at.
+  void CheckColumns(const Line& line) const {
+    if (line.text.size() <= kMostColumns) return;
+    for (const char separator : {';', '\t', '|', ',', ' '}) {
+      const auto fields = static_cast<std::size_t>(std::count(line.text.begin(), line.text.end(), separator)) + 1;
+      if (fields > kMostColumns) {
+        FailAtLine(
+            file_, line.number,
+            "has " + std::to_string(fields) + " fields; at most " + std::to_string(kMostColumns) + " columns are read");
+      }
     }
   }
 
@@ -174,7 +198,7 @@ class HeaderReader {
       for (std::size_t i = 0; i < lines_.size(); ++i) {
         if (lines_[i].comment) continue;
         const Fields fields = SplitFields(lines_[i].text, candidate);
-        if (fields.size() < 2 || !IsData(fields, candidate)) continue;
+        if (fields.size() < 2 || !IsData(fields)) continue;
         header_.separator = candidate;
         data_ = i;
         FindDecimalMark();
@@ -192,7 +216,6 @@ class HeaderReader {
   }
 
   void FindDecimalMark() {
-    if (header_.separator == ',') return;
     std::size_t commas = 0, points = 0;
     std::string storage;
     for (std::size_t i = data_; i < lines_.size(); ++i) {
@@ -233,7 +256,7 @@ class HeaderReader {
   bool TryNames(std::size_t at) {
     const std::string_view text = lines_[at].comment ? CommentText(lines_[at].text) : lines_[at].text;
     const Fields fields = SplitFields(text, header_.separator);
-    if (fields.size() < 2 || (fields.size() == 2 && IsNumeric(fields[1], header_.separator))) return false;
+    if (fields.size() < 2 || (fields.size() == 2 && IsNumeric(fields[1]))) return false;
     std::vector<CsvColumn> columns = Classify(fields);
     CsvColumn rows;
     Coordinate head = Coordinate::kPhiO;
@@ -250,11 +273,16 @@ class HeaderReader {
                   ? 1
                   : 0;
     }
-    if (lone > 1 && at > 0 && !lines_[at - 1].comment) {
-      const std::vector<std::string> names = Combined(SplitFields(lines_[at - 1].text, header_.separator), fields);
+    const Fields above =
+        at > 0 && !lines_[at - 1].comment ? SplitFields(lines_[at - 1].text, header_.separator) : Fields();
+    // Not a title with its value.
+    if (lone > 1 && !above.empty() && std::none_of(above.begin(), above.end(), IsNumeric)) {
+      const std::vector<std::string> names = Combined(above, fields);
       for (std::size_t i = 0; i < columns.size(); ++i) {
         const CsvColumn combined = ClassifyColumn(names[i]);
-        if (combined.role == ColumnRole::kCoordinate) columns[i] = combined;
+        // A heading may stand alone, over a cell that is empty or holds its unit.
+        const bool alone = columns[i].role == ColumnRole::kIgnored && combined.role == ColumnRole::kValue;
+        if (combined.role == ColumnRole::kCoordinate || alone) columns[i] = combined;
       }
     }
     mapping_.Rename(&columns);
@@ -272,6 +300,8 @@ class HeaderReader {
                      "has " + std::to_string(fields) + " fields, but line " + std::to_string(header_.names_line) +
                          " names " + std::to_string(header_.columns.size()) + " columns");
         }
+        NameRowNumbers(fields);
+        TakeHeadAbove(i);
         return true;
       }
     }
@@ -286,6 +316,7 @@ class HeaderReader {
         return true;
       }
     }
+    if (NameByNumbers(fields)) return true;
     // No line names a direction: the last line of words before the data then says what there is.
     for (std::size_t i = data_; i-- > 0;) {
       if (lines_[i].comment) continue;
@@ -297,6 +328,50 @@ class HeaderReader {
       return SetNames(i, std::move(columns));
     }
     return false;
+  }
+
+  // Rows without any names, where the mapping says what the columns are by their numbers.
+  bool NameByNumbers(std::size_t fields) {
+    if (fields == 0) return false;
+    std::vector<CsvColumn> columns(fields, ClassifyColumn(""));
+    mapping_.Rename(&columns);
+    if (!NamesADirection(columns)) return false;
+    header_.columns = std::move(columns);
+    header_.names_line = lines_[data_].number;
+    return true;
+  }
+
+  // R writes the numbers of the rows without a name for them.
+  void NameRowNumbers(std::size_t fields) {
+    if (header_.columns.size() + 1 != fields || header_.columns.back().name.empty()) return;
+    std::size_t rows = 0;
+    std::optional<double> last;
+    std::string storage;
+    for (std::size_t i = data_; i < lines_.size() && rows < 5; ++i) {
+      if (lines_[i].comment) continue;
+      const Fields row = SplitFields(lines_[i].text, header_.separator);
+      const std::optional<double> number = ParseDouble(Unquoted(row[0], &storage));
+      if (row.size() != fields || !number || (last && *number != *last + 1)) return;
+      last = number;
+      ++rows;
+    }
+    if (rows < 2) return;
+    header_.columns.insert(header_.columns.begin(), ClassifyColumn(""));
+    header_.remarks.emplace_back("the first column has no name; it counts the rows and was not used");
+  }
+
+  // What the numbers that columns are named by are may stand alone above them: "AOI (deg)".
+  void TakeHeadAbove(std::size_t names) {
+    const bool numbers = std::any_of(header_.columns.begin(), header_.columns.end(),
+                                     [](const CsvColumn& column) { return column.role == ColumnRole::kNumber; });
+    if (!numbers || header_.head_coordinate || names == 0 || lines_[names - 1].comment) return;
+    const Fields above = SplitFields(lines_[names - 1].text, header_.separator);
+    const auto is_filled = [](std::string_view field) { return !Trim(field).empty(); };
+    const auto only = std::find_if(above.begin(), above.end(), is_filled);
+    if (std::count_if(above.begin(), above.end(), is_filled) != 1) return;
+    std::string storage;
+    const CsvColumn column = ClassifyColumn(Unquoted(*only, &storage));
+    if (column.role == ColumnRole::kCoordinate) header_.head_coordinate = column.coordinate;
   }
 
   void ReadCommentKeys() {
@@ -315,7 +390,7 @@ class HeaderReader {
 
   void TakeUnits() {
     header_.first_data_line = data_ < lines_.size() ? lines_[data_].number : lines_[names_].number + 1;
-    for (std::size_t i = names_ + 1; i < data_; ++i) {
+    for (std::size_t i = names_ + 1; i > 0 && i < data_; ++i) {
       if (lines_[i].comment) continue;
       const Fields units = SplitFields(lines_[i].text, header_.separator);
       if (units.size() > header_.columns.size() + 1 || !std::all_of(units.begin(), units.end(), IsUnitOrBlank))
@@ -341,7 +416,9 @@ class HeaderReader {
   [[noreturn]] void FailWithoutNames() const {
     FailAtLine(
         file_, lines_[std::min(data_, lines_.size() - 1)].number,
-        "numbers begin, but no line names the columns; write a line of names first. Allowed: " + AllowedColumns());
+        "numbers begin, but no line names the columns; write a line of names first, or say what they are by --columns "
+        "theta_i=#1,theta_o=#2,... Allowed: " +
+            AllowedColumns());
   }
 
   const InputFile& file_;
@@ -400,6 +477,15 @@ void SplitCsvLine(std::string_view line, char separator, std::vector<std::string
 }
 
 std::optional<double> ParseCsvNumber(std::string_view field, char decimal_mark) {
+  field = Trim(field);
+  if (field.ends_with("\xc2\xb0")) field = Trim(field.substr(0, field.size() - 2));
+  // Fortran writes the exponents of its double precision with a D.
+  const std::size_t exponent = field.find_first_of("dD", 1);
+  if (exponent != std::string_view::npos && field[exponent - 1] >= '.' && field[exponent - 1] <= '9') {
+    std::string text(field);
+    text[exponent] = 'e';
+    return ParseCsvNumber(text, decimal_mark);
+  }
   if (decimal_mark == '.') return ParseDouble(field);
   if (field.find('.') != std::string_view::npos && field.find(',') != std::string_view::npos) return std::nullopt;
   std::string point(field);

@@ -1,6 +1,7 @@
 #include "lobefit/io/csv/keys.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lobefit/base/error.h"
@@ -117,7 +118,36 @@ bool ReadCoordinate(std::string_view key, std::string_view word, CsvKeys* keys) 
     return false;
   const std::optional<AngleUnit> unit = quantity->unit.empty() ? column.angle_unit : ParseAngleUnit(quantity->unit);
   if (!quantity->unit.empty() && !unit) return false;
-  keys->Fix({column.coordinate, quantity->number, unit, column.from_horizon});
+  keys->Fix({column.coordinate, quantity->number, unit, column.form});
+  return true;
+}
+
+// "All angles are in radians."
+bool ReadSentence(std::string_view text, CsvKeys* keys) {
+  const std::string lower = ToLower(text);
+  std::vector<std::string_view> words = SplitBlanks(lower);
+  for (std::string_view& word : words) {
+    while (!word.empty() && std::string_view(".,;()[]").find(word.back()) != std::string_view::npos)
+      word.remove_suffix(1);
+    while (!word.empty() && (word.front() == '(' || word.front() == '[')) word.remove_prefix(1);
+  }
+  static constexpr std::array<std::string_view, 6> kAngleWords = {"angles",  "angle",  "winkel",
+                                                                  "angulos", "angoli", "azimuths"};
+  constexpr std::size_t kMostWords = 12;  // more are a description
+  std::optional<AngleUnit> unit;
+  bool angles = false;
+  if (words.size() > kMostWords) return false;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    angles = angles || std::find(kAngleWords.begin(), kAngleWords.end(), words[i]) != kAngleWords.end();
+    const std::optional<AngleUnit> own = i > 0 ? ParseAngleUnit(words[i]) : std::nullopt;
+    if (!own) continue;
+    if (unit) return false;
+    // "30 deg" is an angle.
+    if (words[i - 1] != "in" && words[i - 1] != "are" && words[i - 1] != "angles") return false;
+    unit = own;
+  }
+  if (!angles || !unit || keys->angle_unit) return false;
+  keys->angle_unit = unit;
   return true;
 }
 
@@ -155,7 +185,7 @@ const FixedCoordinate* CsvKeys::Find(Coordinate coordinate) const {
 
 bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, CsvKeys* keys) {
   const std::size_t at = text.find_first_of(":=");
-  if (at == std::string_view::npos) return false;
+  if (at == std::string_view::npos) return ReadSentence(text, keys);
   const std::string_view key = Trim(text.substr(0, at)), word = Trim(text.substr(at + 1));
   const std::string name = KeyName(key);
   if (Is(name, {"angle-unit", "angle-units", "angular-unit", "angular-units", "unit-of-angle", "unit-of-angles",
@@ -173,7 +203,7 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
     Set(file, line, "incident", word, "towards, propagation", ParseIncidentSense(word), &keys->incident_sense);
   } else if (Is(name, {"wavelength-unit", "wavelength-units", "wavelengths-unit", "unit-of-wavelength",
                        "unit-of-wavelengths"})) {
-    Set(file, line, "wavelength-unit", word, "nm, um, mm, m, A, cm^-1, eV, THz", ParseWavelengthUnit(word),
+    Set(file, line, "wavelength-unit", word, "nm, um, mm, m, A, cm^-1, eV, THz, GHz", ParseWavelengthUnit(word),
         &keys->wavelength_unit);
   } else if (name == "sample-rotation-deg") {
     const std::optional<double> degrees = ParseDouble(word);
@@ -231,10 +261,12 @@ bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::str
     if (!Trim(field).empty()) filled.push_back(Trim(field));
   }
   if (filled.empty() || filled.size() > 3) return false;
-  const std::size_t mark = filled[0].find_first_of(":=");
   std::string text(filled[0]);
-  if (mark == std::string_view::npos) {
-    if (filled.size() == 1) return false;
+  // "AOI = 30" between blanks has its mark in a field of its own.
+  const bool marked = filled[0].find_first_of(":=") != std::string_view::npos ||
+                      (filled.size() > 1 && filled[1].find_first_of(":=") == 0);
+  if (!marked) {
+    if (filled.size() == 1) return ReadSentence(filled[0], keys);
     text += ':';
   }
   for (std::size_t i = 1; i < filled.size(); ++i) {

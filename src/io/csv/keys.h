@@ -18,7 +18,7 @@ struct FixedCoordinate {
   Coordinate coordinate = Coordinate::kThetaI;
   double number = 0;
   std::optional<AngleUnit> unit;  // unset: that of the file
-  bool from_horizon = false;
+  AngleForm form = AngleForm::kPolar;
   friend bool operator==(const FixedCoordinate&, const FixedCoordinate&) = default;
 };
 

@@ -9,6 +9,7 @@
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/angles.h"
 #include "lobefit/io/csv/mapping.h"
+#include "lobefit/io/csv/name_rules.h"
 #include "lobefit/io/csv/row_conditions.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
@@ -40,10 +41,7 @@ class LayoutBuilder {
     ResolveHead();
     FindAngles(file_, header_, options_, &columns_, &layout_, measurement_);
     layout_.wavelength = FindOnly(ColumnRole::kWavelength);
-    layout_.polarisation = FindOnly(ColumnRole::kPolarisation);
-    for (const RowFilter& filter : layout_.filters) {
-      if (filter.column == layout_.polarisation) layout_.polarisation = kNoColumn;
-    }
+    FindPolarisations();
     const std::string value_column = options_.value_column.value_or(header_.keys.value_column);
     if (!value_column.empty()) {
       ChooseValueColumn(value_column);
@@ -88,8 +86,50 @@ class LayoutBuilder {
     measurement_->conventions["where"] = Excerpt(text, 80) + (options_.where.empty() ? " (header)" : " (option)");
   }
 
+  // Those that --where does not choose one of.
+  void FindPolarisations() {
+    bool light_chosen = false;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (columns_[i].role != ColumnRole::kPolarisation) continue;
+      const bool chosen = std::any_of(layout_.filters.begin(), layout_.filters.end(),
+                                      [&](const RowFilter& filter) { return filter.column == i; });
+      light_chosen = light_chosen || (chosen && !columns_[i].of_viewer);
+      if (!chosen) layout_.polarisations.push_back(i);
+    }
+    if (layout_.polarisations.size() > 2) {
+      Fail("more than two columns hold a polarisation: " + Quoted(columns_[layout_.polarisations[0]]) + ", " +
+           Quoted(columns_[layout_.polarisations[1]]) + ", ...; choose rows with --where");
+    }
+    // The light's state chosen, f_r is the sum over the detector's, which the average is not.
+    if (light_chosen && layout_.polarisations.size() == 1 && columns_[layout_.polarisations[0]].of_viewer) {
+      Fail("--where chooses a polarisation of the light; choose one of " + Quoted(columns_[layout_.polarisations[0]]) +
+           " too");
+    }
+  }
+
+  bool IsPolarisation(std::size_t i) const {
+    return std::find(layout_.polarisations.begin(), layout_.polarisations.end(), i) != layout_.polarisations.end();
+  }
+
   // "f_R" is f_r where no "f_G" and "f_B" stand beside it, and a channel where they do.
   void ResolveLetters() {
+    // "f_s" is the scattered light's, but beside "f_p" one of two polarisations.
+    for (const CsvColumn& column : columns_) {
+      const NameWords name = SplitName(column.name);
+      if (name.words.size() < 2 || name.words.back() != "p" || column.role == ColumnRole::kCoordinate) continue;
+      for (const CsvColumn& other : columns_) {
+        NameWords sibling = SplitName(other.name);
+        if (sibling.words.empty() || sibling.words.back() != "s" || options_.value_column ||
+            !header_.keys.value_column.empty())
+          continue;
+        sibling.words.back() = "p";
+        std::optional<ValueKind> kind;
+        if (sibling.words != name.words || !NamesValue(sibling.words[0], &kind)) continue;
+        Fail("the columns " + Quoted(other) + " and " + Quoted(column) +
+             " are two polarisations; choose one with --value-column, or write their mean, f_r of unpolarised light, "
+             "into a column of its own");
+      }
+    }
     for (CsvColumn& column : columns_) {
       if (column.role != ColumnRole::kValue) continue;
       const NameWords split = SplitName(column.name);
@@ -186,6 +226,11 @@ class LayoutBuilder {
              " are given; give all three, or choose one column with --value-column");
       }
     }
+    constexpr std::size_t kMostWavelengths = 4096;
+    if (spectral.size() > kMostWavelengths) {
+      Fail(std::to_string(spectral.size()) + " columns hold wavelengths; at most " + std::to_string(kMostWavelengths) +
+           " are read: take out some, or choose one with --value-column");
+    }
     if (!spectral.empty()) candidates.push_back(spectral);
     if (candidates.size() != 1) {
       std::vector<std::string> names;
@@ -255,7 +300,12 @@ class LayoutBuilder {
     std::map<std::string, std::size_t> by_channel;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const CsvColumn& column = columns_[i];
-      if (column.role == ColumnRole::kSigma && !by_channel.emplace(column.channel, i).second) {
+      if (column.role != ColumnRole::kSigma) continue;
+      const auto [known, is_new] = by_channel.emplace(column.channel, i);
+      if (is_new || !column.problem.empty()) continue;
+      if (!columns_[known->second].problem.empty()) {
+        known->second = i;  // the standard uncertainty, beside an expanded one of unknown factor
+      } else {
         Fail("two columns are named " + Quoted(column) + "; remove one of them");
       }
     }
@@ -279,7 +329,7 @@ class LayoutBuilder {
       return std::find(group.values.begin(), group.values.end(), i) != group.values.end();
     };
     return std::any_of(layout_.groups.begin(), layout_.groups.end(), is_value) || i == layout_.sigma ||
-           i == layout_.weight || i == layout_.wavelength || i == layout_.polarisation ||
+           i == layout_.weight || i == layout_.wavelength || IsPolarisation(i) ||
            std::find(layout_.channel_sigmas.begin(), layout_.channel_sigmas.end(), i) != layout_.channel_sigmas.end() ||
            std::any_of(layout_.filters.begin(), layout_.filters.end(),
                        [&](const RowFilter& filter) { return filter.column == i; }) ||
@@ -304,6 +354,12 @@ class LayoutBuilder {
              ", which speaks of an angle but is not known; allowed: " + AllowedColumns() +
              "; or choose the column of values with --value-column, then unknown ones are ignored");
       }
+      if (MarksRows(column)) {
+        measurement_->remarks.push_back("the column " + Quoted(column) +
+                                        " may say which rows are good and was not used; choose them with --where \"" +
+                                        Excerpt(column.name) + "=...\"");
+        continue;
+      }
       ignored.push_back(Excerpt(column.name));
       if (column.role == ColumnRole::kUnknown) layout_.unused.push_back(i);
     }
@@ -313,6 +369,23 @@ class LayoutBuilder {
       ignored.back() += more;
     }
     if (!ignored.empty()) measurement_->remarks.push_back("columns not used: " + Join(ignored));
+  }
+
+  // A column that tells good rows from bad ones, by its name and by more than one word in the first rows.
+  bool MarksRows(const CsvColumn& column) const {
+    const NameWords split = SplitName(column.name);
+    if (split.words.size() > 2) return false;
+    const bool named = std::any_of(split.words.begin(), split.words.end(), [](const std::string& word) {
+      return word == "flag" || word == "flags" || word == "valid" || word == "validity" || word == "status" ||
+             word == "quality" || word == "good" || word == "bad" || word == "ok" || word == "saturated" ||
+             word == "overload" || word == "mask" || word == "masked" || word == "usable" || word == "outlier";
+    });
+    const auto at = static_cast<std::size_t>(&column - columns_.data());
+    std::set<std::string> words;
+    for (const std::vector<std::string>& row : header_.first_rows) {
+      if (at < row.size()) words.insert(row[at]);
+    }
+    return named && words.size() > 1;
   }
 
   bool IsValue(std::size_t i) const {
@@ -376,7 +449,7 @@ class LayoutBuilder {
 
   void MarkNumbers() {
     layout_.is_number.assign(columns_.size(), false);
-    for (std::size_t i = 0; i < columns_.size(); ++i) layout_.is_number[i] = IsUsed(i) && i != layout_.polarisation;
+    for (std::size_t i = 0; i < columns_.size(); ++i) layout_.is_number[i] = IsUsed(i) && !IsPolarisation(i);
     for (const RowFilter& filter : layout_.filters) {
       const bool only_filtered = std::none_of(layout_.coordinates.begin(), layout_.coordinates.end(),
                                               [&](const auto& entry) { return entry.second == filter.column; }) &&

@@ -32,7 +32,8 @@ struct CsvLayout {
   DirectionReader directions;
   Coordinates fixed = {};                                       // coordinates that all rows share
   std::vector<std::pair<Coordinate, std::size_t>> coordinates;  // and those of columns
-  std::size_t wavelength = kNoColumn, weight = kNoColumn, sigma = kNoColumn, polarisation = kNoColumn;
+  std::size_t wavelength = kNoColumn, weight = kNoColumn, sigma = kNoColumn;
+  std::vector<std::size_t> polarisations;  // at most that of the light and that of the viewer
   WavelengthUnit wavelength_unit;
   bool by_wavelength = false;  // each row has a wavelength, its own or one stated in the head
   std::vector<ValueGroup> groups;

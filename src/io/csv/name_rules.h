@@ -31,6 +31,9 @@ bool ClassifyAngle(const NameList& words, bool magnitude, CsvColumn* column);
 bool ClassifyComponent(const NameList& words, CsvColumn* column);
 // True for a word that names a kind of angle.
 bool IsAngleWord(std::string_view word);
+// Words for the side of the light and for that of the viewer.
+bool IsLightWord(std::string_view word);
+bool IsViewerWord(std::string_view word);
 
 // Whether the words, joined, name a value; its kind goes to `kind`.
 bool NamesValue(const std::string& joined, std::optional<ValueKind>* kind);

@@ -23,7 +23,8 @@ constexpr std::array<std::string_view, 60> kWords = {
 }  // namespace
 
 bool IsNoValueWord(std::string_view field) {
-  const std::string lower = ToLower(Trim(field));
+  std::string lower = ToLower(Trim(field));
+  if (lower.size() > 2 && lower.front() == '(' && lower.back() == ')') lower = lower.substr(1, lower.size() - 2);
   if (std::find(kWords.begin(), kWords.end(), lower) != kWords.end()) return true;
   // "---", "***", "####" (a column too narrow), an en or em dash.
   if (lower.find_first_not_of("-") == std::string::npos || lower.find_first_not_of("*") == std::string::npos ||
@@ -33,8 +34,9 @@ bool IsNoValueWord(std::string_view field) {
   }
   // "1.#QNAN", "-1.#IND", "1.#INF" of older C libraries; "<0.001" and ">100", beyond what the instrument can tell.
   if (lower.find(".#") != std::string::npos) return true;
-  return (lower.front() == '<' || lower.front() == '>') &&
-         ParseDouble(std::string_view(lower).substr(lower.size() > 1 && lower[1] == '=' ? 2 : 1)).has_value();
+  if (lower.front() != '<' && lower.front() != '>') return false;
+  const std::string_view limit = Trim(std::string_view(lower).substr(lower.size() > 1 && lower[1] == '=' ? 2 : 1));
+  return limit == "lod" || limit == "loq" || limit == "dl" || limit == "mdl" || ParseDouble(limit).has_value();
 }
 
 NoValues::NoValues(const std::string& list) {

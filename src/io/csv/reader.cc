@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "lobefit/base/csv_fields.h"
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/distinctions.h"
@@ -56,14 +57,20 @@ class CsvReader {
     AddRemarks();
     if (by_wavelength_) {
       Measurement gathered;
-      WithPath([&] { gathered = by_wavelength_->Gather(repeated_ == RepeatedRows::kMean); });
+      WithPath([&] {
+        gathered = by_wavelength_->Gather(repeated_ == RepeatedRows::kMean, options_.wavelength_tolerance_nm);
+      });
+      RequireWhole(gathered);
       for (int r = 0; r < kSetAsideReasons; ++r) {
         const auto reason = static_cast<SetAsideReason>(r);
         gathered.set_aside.Add(reason, builder.measurement().set_aside[reason]);
       }
       if (gathered.channels.size() < by_wavelength_->wavelengths()) {
-        notes_.remarks.push_back(std::to_string(by_wavelength_->wavelengths()) +
-                                 " wavelengths that wander by less than half of their spacing are " +
+        const std::string how =
+            options_.wavelength_tolerance_nm
+                ? " wavelengths within " + FormatDouble(*options_.wavelength_tolerance_nm) + " nm are "
+                : " wavelengths that wander by less than half of their spacing are ";
+        notes_.remarks.push_back(std::to_string(by_wavelength_->wavelengths()) + how +
                                  std::to_string(gathered.channels.size()) + " channel" +
                                  (gathered.channels.size() == 1 ? "" : "s"));
       }
@@ -73,6 +80,22 @@ class CsvReader {
   }
 
  private:
+  // Rows whose wavelengths differ from pair to pair leave no pair that has all of them.
+  void RequireWhole(const Measurement& gathered) const {
+    if (!options_.channels.empty() || gathered.samples.size() == 0 || gathered.channels.size() < 2) return;
+    for (std::size_t i = 0; i < gathered.samples.size(); ++i) {
+      const bool whole = std::none_of(gathered.samples.values.begin(), gathered.samples.values.end(),
+                                      [&](const std::vector<double>& values) { return std::isnan(values[i]); });
+      if (whole) return;
+    }
+    throw InputError(
+        file_.path.string() + ": " + std::to_string(gathered.channels.size()) +
+        " different wavelengths, and none of the " + std::to_string(by_wavelength_->pairs()) +
+        " pairs of directions has all of them; if the wavelength wanders from row to row, "
+        "--wavelength-tolerance NM makes one channel of those that differ by no more, else choose channels "
+        "with --channels");
+  }
+
   // A turn of the whole sample.
   void StateTurn(Samples* samples) const {
     const FixedCoordinate* turn = header_.keys.Find(Coordinate::kSampleRotation);
@@ -156,6 +179,8 @@ class CsvReader {
       if (!words_message_.empty()) FailAtLine(file_, words_line_, words_message_);
       AddRow(parser, static_cast<std::uint32_t>(number), builder);
     }
+    if (!words_message_.empty() && rows_ == 0 && builder->measurement().set_aside.total() == 0)
+      FailAtLine(file_, words_line_, words_message_);
     if (!words_message_.empty()) {
       notes_.remarks.push_back(std::to_string(words_) + (words_ == 1 ? " line" : " lines") +
                                " after the last row, from line " + std::to_string(words_line_) + " on, hold no row: '" +
@@ -168,12 +193,28 @@ class CsvReader {
     if (Trim(line) == Trim(header_.names)) return;
     std::vector<std::string_view> fields;
     SplitCsvLine(line, header_.separator, &fields);
-    if (ReadKeyAmidRows(number, {}, fields)) return;
+    if (AreNamesAgain(fields) || ReadKeyAmidRows(number, {}, fields)) return;
     ++words_;
     if (!words_message_.empty()) return;
     words_line_ = number;
     words_message_ = parser.WordsMessage();
     words_text_ = Excerpt(Trim(line));
+  }
+
+  // The same columns in the same order, however their names are spelt.
+  bool AreNamesAgain(const std::vector<std::string_view>& fields) const {
+    if (fields.size() != header_.columns.size()) return false;
+    std::string storage;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const CsvColumn own = ClassifyColumn(header_.columns[i].name),
+                      other = ClassifyColumn(Unquoted(fields[i], &storage));
+      const bool same = own.name == other.name ||
+                        (own.role != ColumnRole::kUnknown && own.role == other.role && own.unit == other.unit &&
+                         own.coordinate == other.coordinate && own.form == other.form && own.channel == other.channel &&
+                         own.value_kind == other.value_kind);
+      if (!same) return false;
+    }
+    return true;
   }
 
   bool ReadKeyAmidRows(std::size_t number, std::string_view comment, const std::vector<std::string_view>& fields) {
@@ -274,17 +315,17 @@ class CsvReader {
       AddWavelength(row, {wi, wo, 0, values_[0], weight, line}, builder);
     } else if (builder->Add(wi, wo, values_.data(), line)) {
       if (HasWeights()) builder->measurement().samples.weight.push_back(weight);
-      if (layout_.polarisation != kNoColumn)
-        polarisations_.push_back(NumberOfPolarisation(row.Text(layout_.polarisation)));
+      if (!layout_.polarisations.empty()) polarisations_.push_back(NumberOfPolarisation(row));
     }
   }
 
   void AddWavelength(const RowParser& row, WavelengthTable::Row sample, MeasurementBuilder* builder) {
-    if (layout_.polarisation != kNoColumn) {
+    if (!layout_.polarisations.empty() && NumberOfPolarisation(row) > 0) {
+      const std::size_t column = layout_.polarisations[0];
       FailAtLine(
           file_, sample.line,
           "rows with a wavelength of their own differ in polarisation too; choose one with --where, as in --where " +
-              Excerpt(header_.columns[layout_.polarisation].name) + "=" + Excerpt(row.Text(layout_.polarisation)));
+              Excerpt(header_.columns[column].name) + "=" + Excerpt(row.Text(column)));
     }
     if (layout_.wavelength == kNoColumn) {
       sample.nm = *header_.keys.wavelength_nm;
@@ -394,11 +435,15 @@ class CsvReader {
       notes_.remarks.push_back(std::to_string(other_marks_) + " more fields without a number, of other words");
   }
 
-  std::uint8_t NumberOfPolarisation(std::string_view text) {
-    const std::string word = ToLower(Trim(text));
+  // Of the light and of the viewer together, where the row has both.
+  std::uint8_t NumberOfPolarisation(const RowParser& row) {
+    std::string word;
+    for (const std::size_t column : layout_.polarisations)
+      word += (word.empty() ? "" : " ") + ToLower(Trim(row.Text(column)));
     for (std::size_t i = 0; i < polarisation_names_.size(); ++i) {
       if (polarisation_names_[i] == word) return static_cast<std::uint8_t>(i);
     }
+    if (polarisation_names_.empty()) first_polarisation_ = std::string(Trim(row.Text(layout_.polarisations[0])));
     if (polarisation_names_.size() >= 200)
       FailAtLine(file_, header_.names_line,
                  "the column of polarisations holds more than 200 different words; choose one with --where");
@@ -407,10 +452,10 @@ class CsvReader {
   }
 
   void AveragePolarisations(Measurement* measurement) {
-    const std::string column = Excerpt(header_.columns[layout_.polarisation].name);
+    const std::string column = Excerpt(header_.columns[layout_.polarisations[0]].name);
     const std::string remark = AverageOverPolarisation(polarisations_, polarisation_names_, measurement);
     if (!remark.empty())
-      notes_.remarks.push_back(remark + "; --where " + column + "=" + Excerpt(polarisation_names_[0]) + " chooses one");
+      notes_.remarks.push_back(remark + "; --where " + column + "=" + Excerpt(first_polarisation_) + " chooses one");
   }
 
   // For the check of conventions: how far the angles reach, whatever directions they gave.
@@ -457,6 +502,7 @@ class CsvReader {
   std::string words_message_, words_text_;
   std::vector<std::uint8_t> polarisations_;  // one a sample
   std::vector<std::string> polarisation_names_;
+  std::string first_polarisation_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/columns.h"
 #include "lobefit/io/csv/header.h"

@@ -1,5 +1,7 @@
 #include "lobefit/io/csv/row_parser.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lobefit/base/csv_fields.h"
@@ -28,7 +30,7 @@ RowParser::RowParser(const InputFile& file, const CsvHeader& header, const CsvLa
   if (layout.sigma != kNoColumn) needed_[layout.sigma] |= kMayLack;
   for (const std::size_t i : layout.channel_sigmas) needed_[i] |= kMayLack;
   for (const RowFilter& filter : layout.filters) needed_[filter.column] |= kText;
-  if (layout.polarisation != kNoColumn) needed_[layout.polarisation] |= kText;
+  for (const std::size_t i : layout.polarisations) needed_[i] |= kText;
   is_table_ = layout.groups.size() > 1;
 }
 
@@ -76,7 +78,9 @@ void RowParser::SplitFast(std::string_view line) {
     if (columns_ < needed_.size() && (needed_[columns_] & (kNumber | kText)) == kNumber && begin < line.size()) {
       const std::size_t quote = line[begin] == '"' ? 1 : 0;
       std::size_t length = 0;
-      const std::optional<double> plain = ParsePlainDecimal(line.substr(begin + quote), &length, mark);
+      // Between commas only a number in quotes has a decimal comma.
+      const std::optional<double> plain =
+          ParsePlainDecimal(line.substr(begin + quote), &length, mark == separator && quote == 0 ? '.' : mark);
       std::size_t end = begin + quote + length;
       if (plain && quote == 1) end = end < line.size() && line[end] == '"' ? end + 1 : line.size() + 1;
       if (plain && (end == line.size() || (end < line.size() && line[end] == separator)) &&
@@ -141,7 +145,7 @@ RowParser::Kind RowParser::Parse(std::string_view line, std::size_t line_number)
     if (bad_ == 0) bad_field_ = {};
     return Kind::kWords;
   }
-  if (bad_ > 0 && good_ < bad_) return Kind::kWords;
+  if (bad_ > 0 && (good_ < bad_ || IsSummary(line))) return Kind::kWords;
   // A table with a column for each angle may lack cells at the end of its rows; any row may have a separator there.
   bool lacks = false;
   for (std::size_t i = columns_; i < needed_.size(); ++i) {
@@ -161,6 +165,20 @@ RowParser::Kind RowParser::Parse(std::string_view line, std::size_t line_number)
   return Kind::kRow;
 }
 
+// "Average;37,5;157,5;0,4": a row that a spreadsheet has put below the others.
+bool RowParser::IsSummary(std::string_view line) const {
+  static constexpr std::array<std::string_view, 20> kSummaries = {
+      "mean",  "average", "avg", "median", "max",    "maximum",    "min",    "minimum", "sum",     "total",
+      "count", "std",     "sd",  "stdev",  "stdev.", "mittelwert", "mittel", "summe",   "moyenne", "media"};
+  std::vector<std::string_view> fields;
+  SplitCsvLine(line, header_.separator, &fields);
+  const auto first = std::find_if(fields.begin(), fields.end(), [](std::string_view f) { return !Trim(f).empty(); });
+  if (first == fields.end()) return false;
+  std::string storage, word = ToLower(Unquoted(*first, &storage));
+  if (!word.empty() && word.back() == ':') word.pop_back();
+  return std::find(kSummaries.begin(), kSummaries.end(), word) != kSummaries.end();
+}
+
 std::string RowParser::FieldMessage(std::size_t column, std::string_view field) const {
   std::string what = "column " + std::to_string(column + 1) + " (" + Excerpt(header_.columns[column].name) + ") ";
   if (Trim(field).empty()) return what + "is empty; write a number, or nan for a value that was not measured";
@@ -169,6 +187,8 @@ std::string RowParser::FieldMessage(std::size_t column, std::string_view field) 
     what += "; write numbers without separators between thousands";
   } else if (field.find(',') != std::string_view::npos) {
     what += "; write a decimal point instead of a comma";
+  } else if (Trim(field).ends_with('%')) {
+    what += "; take the percent signs off and write the unit into the name, as in 'brdf [%]'";
   }
   return what;
 }

@@ -39,6 +39,7 @@ class RowParser {
   void TakeOther(std::string_view field, std::size_t column);
   void SplitFast(std::string_view line);
   void SplitBlankSeparated(std::string_view line);
+  bool IsSummary(std::string_view line) const;
   std::string FieldMessage(std::size_t column, std::string_view field) const;
 
   const InputFile& file_;

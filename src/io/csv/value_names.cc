@@ -23,7 +23,7 @@ struct ValueName {
   std::string_view name;
   std::optional<ValueKind> kind;
 };
-constexpr std::array<ValueName, 52> kValues = {{
+constexpr std::array<ValueName, 54> kValues = {{
     {"value", {}},
     {"values", {}},
     {"val", {}},
@@ -40,6 +40,8 @@ constexpr std::array<ValueName, 52> kValues = {{
     {"f_r11", ValueKind::kBrdf},
     {"f_r_11", ValueKind::kBrdf},
     {"fr_l_over_e", ValueKind::kBrdf},
+    {"fdrb", ValueKind::kBrdf},
+    {"frdb", ValueKind::kBrdf},
     {"bidirectional_reflectance_distribution_function", ValueKind::kBrdf},
     {"f_cos_o", ValueKind::kBrdfCosO},
     {"brdf_cos_o", ValueKind::kBrdfCosO},
@@ -127,12 +129,16 @@ bool IsFiller(std::string_view word) { return HoldsWord(kFillers, word); }
 bool ClassifyWavelengthColumn(const NameList& words, CsvColumn* column) {
   static constexpr std::array<std::string_view, 9> kNames = {"wavelength",   "lambda", "wl",          "wave", "wavelen",
                                                              "wellenlaenge", "wavel",  "wellenlange", "wvl"};
+  const std::string joined = Joined(words);
   const bool known = (words.size() <= 2 && !words.empty() && HoldsWord(kNames, words[0]) &&
                       (words.size() == 1 || words[1] == "i" || words[1] == "in" || words[1] == "incident")) ||
-                     Joined(words) == "longueur_d_onde" || Joined(words) == "lunghezza_d_onda" ||
-                     Joined(words) == "longitud_onda" || Joined(words) == "wave_length";
-  const bool number = words.size() == 1 && words[0] == "wavenumber";
-  if (!known && !number) return false;
+                     joined == "longueur_d_onde" || joined == "lunghezza_d_onda" || joined == "longitud_onda" ||
+                     joined == "comprimento_onda" || joined == "wave_length";
+  const bool number = joined == "wavenumber" || joined == "wellenzahl";
+  // What is said in THz or eV; without a unit it may be the frequency of a chopper.
+  const bool inverse =
+      (joined == "frequency" || joined == "frequenz" || joined == "photon_energy") && ParseWavelengthUnit(column->unit);
+  if (!known && !number && !inverse) return false;
   column->role = ColumnRole::kWavelength;
   if (number && column->unit.empty()) column->unit = "cm^-1";
   return true;
@@ -166,7 +172,11 @@ bool ClassifyChannel(NameList words, CsvColumn* column) {
 // "U (k=2)", "2 sigma", "relative uncertainty", "u_rel": how far a number of uncertainty is from a standard deviation.
 bool ClassifySpread(const NameWords& name, CsvColumn* column) {
   NameList rest;
-  bool spread = false, expanded = name.function == "U", standard = name.function == "u" || name.function == "s";
+  // "U_BRDF" is the expanded one beside "u_BRDF", as the GUM writes them.
+  const bool letter =
+      column->name.size() > 1 && column->name[0] == 'U' && (column->name[1] == '_' || column->name[1] == ' ');
+  bool spread = false, expanded = name.function == "U" || letter,
+       standard = name.function == "u" || name.function == "s";
   for (std::size_t i = 0; i < name.words.size(); ++i) {
     const std::string& word = name.words[i];
     const bool last_number = word.size() == 1 && word[0] >= '1' && word[0] <= '9';

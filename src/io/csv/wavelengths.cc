@@ -27,6 +27,23 @@ WavelengthTable::Grouping WavelengthTable::Apart() const {
   return apart;
 }
 
+WavelengthTable::Grouping WavelengthTable::Within(double tolerance_nm) const {
+  Grouping grouping;
+  grouping.channel.resize(numbers_.size());
+  for (auto first = numbers_.begin(); first != numbers_.end();) {
+    double sum = 0, count = 0;
+    auto last = first;
+    // Nanometres of rows are rounded to 1e-6.
+    for (; last != numbers_.end() && last->first - first->first <= tolerance_nm + 1e-7; ++last, ++count) {
+      grouping.channel[last->second] = static_cast<std::uint32_t>(grouping.nm.size());
+      sum += last->first;
+    }
+    grouping.nm.push_back(std::round(sum / count * 1e4) / 1e4);
+    first = last;
+  }
+  return grouping;
+}
+
 std::optional<WavelengthTable::Grouping> WavelengthTable::Wandering() const {
   constexpr double kMostWidth = 0.01;  // of the wavelength
   const std::vector<std::pair<double, std::uint32_t>> sorted(numbers_.begin(), numbers_.end());
@@ -70,11 +87,17 @@ std::optional<WavelengthTable::Grouping> WavelengthTable::Wandering() const {
   return grouping;
 }
 
-Measurement WavelengthTable::Gather(bool keep_repeats) const {
-  constexpr std::size_t kMostValues = std::size_t{1} << 28;
-  const std::optional<Grouping> wandering = Wandering();
+Measurement WavelengthTable::Gather(bool keep_repeats, std::optional<double> tolerance_nm) const {
+  constexpr std::size_t kMostValues = std::size_t{1} << 28, kMostWavelengths = 4096;
+  const std::optional<Grouping> wandering = tolerance_nm ? Within(*tolerance_nm) : Wandering();
   const Grouping grouping = wandering ? *wandering : Apart();
   const std::size_t channels = grouping.nm.size();
+  if (channels > kMostWavelengths) {
+    throw InputError(std::to_string(channels) + " different wavelengths at " + std::to_string(pair_directions_.size()) +
+                     " pairs of directions; at most " + std::to_string(kMostWavelengths) +
+                     " channels are read: if the wavelength wanders from row to row, --wavelength-tolerance NM makes "
+                     "one channel of those that differ by no more");
+  }
   if (channels > 0 && pair_directions_.size() > kMostValues / channels) {
     throw InputError(std::to_string(channels) + " wavelengths at " + std::to_string(pair_directions_.size()) +
                      " pairs of directions are more values than are read; choose rows with --where");

@@ -27,6 +27,7 @@ class WavelengthTable {
 
   void Add(const Row& row);
   std::size_t wavelengths() const { return numbers_.size(); }
+  std::size_t pairs() const { return pair_directions_.size(); }
 
   // One sample a pair of directions, with NaN where it lacks a wavelength. A wavelength that a pair has already opens a
   // further sample of that pair with `keep_repeats`, else it is counted as a duplicate. A sample weighs as much as the
@@ -34,8 +35,10 @@ class WavelengthTable {
   //
   // A lamp's wavelength that wanders from row to row is one channel: wavelengths within less than half of the distance
   // to their neighbours, and within a hundredth of themselves, become their mean, unless a pair of directions has two
-  // of them. Throws InputError where wavelengths times pairs are more than 2^28 values.
-  Measurement Gather(bool keep_repeats) const;
+  // of them. With `tolerance_nm` those that differ by no more become their mean, and a second row of a pair in one is
+  // repeated. Throws InputError for more than 4096 wavelengths, and where wavelengths times pairs are more than 2^28
+  // values.
+  Measurement Gather(bool keep_repeats, std::optional<double> tolerance_nm = std::nullopt) const;
 
  private:
   struct Entry {
@@ -52,6 +55,7 @@ class WavelengthTable {
     std::vector<double> nm;
   };
   Grouping Apart() const;
+  Grouping Within(double tolerance_nm) const;
   std::optional<Grouping> Wandering() const;
 
   Weights weights_;

@@ -1,5 +1,5 @@
 // pab-opto "Mountain" text: one incident direction a file, header keys in '#' lines, then rows theta phi value (or X Y
-// Z) in degrees. The incident direction points to the source, in the same coordinates as the rows. "DSF" values are f_r
+// Z) in degrees. Files that were joined are read as their parts. The incident direction points to the source, in the same coordinates as the rows. "DSF" values are f_r
 // cos(theta_o); BSDF, BRDF and BTDF have no cosine. theta > 90 degrees is the other side of the sample.
 #include "lobefit/io/mountain/reader.h"
 
@@ -93,6 +93,36 @@ void CheckHeader(const InputFile& file, std::size_t line, const Header& header) 
   }
 }
 
+void CheckPoints(const InputFile& file, std::size_t line, const Header& header, std::size_t rows) {
+  if (!header.points) return;
+  const std::optional<long long> points = ParseInteger(header.points->first);
+  if (points && *points >= 0 && static_cast<std::size_t>(*points) <= rows) return;
+  FailAtLine(file, line,
+             "the file ends after " + std::to_string(rows) + " rows, but line " +
+                 std::to_string(header.points->second) + " announces " + Excerpt(header.points->first) +
+                 " (#datapoints_in_file); it may be cut off");
+}
+
+// The head of a part that follows rows: all of it where the kind of value is said again, else what changes; a comment
+// changes nothing.
+Header HeadOfPart(const Header& before, const Header& part) {
+  if (part.kind) return part;
+  Header head = before;
+  if (part.theta) head.theta = part.theta;
+  if (part.phi) head.phi = part.phi;
+  if (part.up_phi) head.up_phi = part.up_phi;
+  head.points = part.points;
+  return head;
+}
+
+void RequireSameValues(const InputFile& file, std::size_t line, const Header& first, const Header& part) {
+  if (part.kind_word != first.kind_word || part.tristimulus != first.tristimulus) {
+    FailAtLine(file, line,
+               "the rows begin to hold other values than those above (#format, #colorimetry); put the parts into files "
+               "of their own");
+  }
+}
+
 }  // namespace
 
 bool IsMountain(std::string_view bytes) {
@@ -103,9 +133,11 @@ bool IsMountain(std::string_view bytes) {
 }
 
 Measurement ReadMountain(const InputFile& file, const ReadOptions& options) {
-  Header header;
+  Header header, part;
   std::optional<MeasurementBuilder> builder;
-  std::size_t rows = 0, transmitted = 0;
+  Header first;
+  std::size_t rows = 0, transmitted = 0, part_rows = 0;
+  bool in_head = true;
   bool back = false;
   double turn = 0;
   Vec3 wi = {0, 0, 1};
@@ -118,16 +150,26 @@ Measurement ReadMountain(const InputFile& file, const ReadOptions& options) {
     const std::size_t at = lines.line_number();
     if (Trim(line).empty()) continue;
     if (line[0] == '#') {
-      if (builder) {
-        FailAtLine(file, at, "a header line stands after the first row; all header lines come before the rows");
-      }
-      ReadHeaderLine(file, at, line, &header);
+      if (!in_head) part = {};
+      in_head = true;
+      ReadHeaderLine(file, at, line, &part);
       continue;
     }
-    if (!builder) {
+    if (in_head) {
+      in_head = false;
+      const bool begins = part.kind || part.theta || part.phi || part.points;
+      if (builder && begins) {
+        CheckPoints(file, at, header, part_rows);
+        part_rows = 0;
+      }
+      header = !builder ? part : begins ? HeadOfPart(header, part) : header;
       CheckHeader(file, at, header);
-      builder.emplace(
-          Channels{header.tristimulus ? std::vector<std::string>{"X", "Y", "Z"} : std::vector<std::string>{"Y"}, {}});
+      if (!builder) {
+        first = header;
+        builder.emplace(
+            Channels{header.tristimulus ? std::vector<std::string>{"X", "Y", "Z"} : std::vector<std::string>{"Y"}, {}});
+      }
+      RequireSameValues(file, at, first, header);
       if (options.mountain_azimuth == MountainAzimuth::kUp) turn = 90 - header.up_phi.value_or(0);
       back = *header.theta > 90;
       wi = turned(FromSpherical(DegreesToRadians(*header.theta), DegreesToRadians(*header.phi + turn)));
@@ -148,18 +190,13 @@ Measurement ReadMountain(const InputFile& file, const ReadOptions& options) {
     if (!IsAboveHorizon(wo)) ++transmitted;
     builder->Add(wi, wo, values, static_cast<std::uint32_t>(at));
     ++rows;
+    ++part_rows;
   }
   const std::size_t last = std::max<std::size_t>(lines.line_number(), 1);
   if (!builder) FailAtLine(file, last, "the file ends after its header; it has no rows and may be cut off");
-  if (header.points) {
-    const std::optional<long long> points = ParseInteger(header.points->first);
-    if (!points || *points < 0 || static_cast<std::size_t>(*points) > rows) {
-      FailAtLine(file, last,
-                 "the file ends after " + std::to_string(rows) + " rows, but line " +
-                     std::to_string(header.points->second) + " announces " + Excerpt(header.points->first) +
-                     " (#datapoints_in_file); it may be cut off");
-    }
-  }
+  if (in_head && (part.kind || part.theta || part.phi))
+    FailAtLine(file, last, "the file ends after the header of a part; it has no rows and may be cut off");
+  CheckPoints(file, last, header, part_rows);
   Measurement measurement = builder->Finish();
   if (header.kind_word == "btdf" || transmitted == rows) {
     FailAtLine(file, last,

@@ -18,8 +18,11 @@ constexpr std::size_t kHead = std::size_t{64} << 10;
 // By iconv of the C library: it is everywhere, and knows the encodings that are needed.
 std::string Convert(std::string_view bytes, const char* from, const std::filesystem::path& path) {
   const iconv_t converter = iconv_open("UTF-8", from);
+  const std::string name(from, std::string_view(from).find('/') == std::string_view::npos
+                                   ? std::string_view(from).size()
+                                   : std::string_view(from).find('/'));
   if (converter == reinterpret_cast<iconv_t>(-1))
-    throw InputError(path.string() + ": is " + from + " text, which this system cannot convert; save it as UTF-8");
+    throw InputError(path.string() + ": is " + name + " text, which this system cannot convert; save it as UTF-8");
   std::string text(bytes.size() * 3 / 2 + 16, '\0');
   // iconv does not write to its input, but its interface was made before const.
   char* in = const_cast<char*>(bytes.data());
@@ -35,8 +38,8 @@ std::string Convert(std::string_view bytes, const char* from, const std::filesys
       continue;
     }
     iconv_close(converter);
-    throw InputError(path.string() + ": byte " + std::to_string(bytes.size() - left) + ": is no " + from +
-                     " text; save it as UTF-8");
+    throw InputError(path.string() + ": byte " + std::to_string(bytes.size() - left) + ": is neither UTF-8 nor " +
+                     name + " text; save it as UTF-8");
   }
   iconv_close(converter);
   text.resize(used);

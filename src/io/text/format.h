@@ -62,6 +62,8 @@ struct ReadOptions {
   std::string columns;
   // --where COLUMN=VALUE,... (csv): only rows with these texts or numbers.
   std::string where;
+  // --wavelength-tolerance NM (csv): wavelengths of rows that differ by no more are one channel.
+  std::optional<double> wavelength_tolerance_nm;
   // --value-scale UNIT (csv): what the numbers are in: %, dB, log10, ln, 1e-3/sr, a.u.; io/text/units.h.
   std::string value_scale;
   // --no-value LIST (all): words (csv) and numbers that stand for no value.

@@ -25,7 +25,7 @@ auto FindSpelling(const Table& table, std::string_view word) -> std::optional<de
   return std::nullopt;
 }
 
-constexpr std::array<Spelling<AngleUnit>, 25> kAngles = {{
+constexpr std::array<Spelling<AngleUnit>, 32> kAngles = {{
     {"deg", AngleUnit::kDegrees},
     {"degs", AngleUnit::kDegrees},
     {"degree", AngleUnit::kDegrees},
@@ -35,6 +35,13 @@ constexpr std::array<Spelling<AngleUnit>, 25> kAngles = {{
     {"gradi", AngleUnit::kDegrees},
     {"degres", AngleUnit::kDegrees},
     {"degre", AngleUnit::kDegrees},
+    {"graus", AngleUnit::kDegrees},
+    {"graden", AngleUnit::kDegrees},
+    {"grader", AngleUnit::kDegrees},
+    {"stopnie", AngleUnit::kDegrees},
+    {"stupne", AngleUnit::kDegrees},
+    {"radianes", AngleUnit::kRadians},
+    {"radianti", AngleUnit::kRadians},
     {"rad", AngleUnit::kRadians},
     {"rads", AngleUnit::kRadians},
     {"radian", AngleUnit::kRadians},
@@ -53,7 +60,7 @@ constexpr std::array<Spelling<AngleUnit>, 25> kAngles = {{
     {"arcseconds", AngleUnit::kArcSeconds},
 }};
 
-constexpr std::array<Spelling<WavelengthUnit>, 19> kWavelengths = {{
+constexpr std::array<Spelling<WavelengthUnit>, 26> kWavelengths = {{
     {"nm", {1, false, "nm"}},
     {"nanometer", {1, false, "nm"}},
     {"nanometers", {1, false, "nm"}},
@@ -74,15 +81,14 @@ constexpr std::array<Spelling<WavelengthUnit>, 19> kWavelengths = {{
     // h c = 1239.841984 eV nm and c = 299792.458 THz nm, both exact in the SI of 2019 to the digits given.
     {"ev", {1239.841984332, true, "eV"}},
     {"thz", {299792.458, true, "THz"}},
+    {"ghz", {299792458.0, true, "GHz"}},
+    {"hz", {299792458e9, true, "Hz"}},
+    {"1/m", {1e9, true, "m^-1"}},
+    {"m^-1", {1e9, true, "m^-1"}},
+    {"m-1", {1e9, true, "m^-1"}},
+    {"1/um", {1e3, true, "um^-1"}},
+    {"um^-1", {1e3, true, "um^-1"}},
 }};
-
-// What is per steradian, after its powers of ten: spellings of 1/sr.
-bool IsPerSteradian(std::string_view unit) {
-  static constexpr std::array<std::string_view, 13> kSpellings = {
-      "1/sr",   "/sr",     "sr^-1", "sr-1",        "sr^(-1)",      "sr**-1",      "persr",
-      "1/ster", "ster^-1", "invsr", "1/steradian", "persteradian", "steradian^-1"};
-  return std::find(kSpellings.begin(), kSpellings.end(), unit) != kSpellings.end();
-}
 
 // A factor before a unit: "1e-3/sr", "10^-3sr^-1". The rest of the unit goes to `rest`. A factor behind a times sign is
 // not taken: some mean by "x 1000" that the numbers are to be multiplied, some that they have been.
@@ -105,6 +111,13 @@ std::optional<double> Factor(std::string_view unit, std::string_view* rest) {
 }
 
 }  // namespace
+
+bool IsPerSteradian(std::string_view unit) {
+  static constexpr std::array<std::string_view, 15> kSpellings = {
+      "1/sr",    "/sr",   "sr^-1",       "sr-1",         "sr^(-1)",      "sr**-1",           "persr",    "1/ster",
+      "ster^-1", "invsr", "1/steradian", "persteradian", "steradian^-1", "inversesteradian", "inversesr"};
+  return std::find(kSpellings.begin(), kSpellings.end(), unit) != kSpellings.end();
+}
 
 double ValueScale::Apply(double number) const {
   switch (form) {

@@ -41,7 +41,9 @@ std::optional<AngleUnit> ParseAngleUnit(std::string_view unit);
 // 1/sr and its spellings, nothing or 1 for a reflectance factor, %, dB, log10, ln, a power of ten (as in "1e-3/sr"),
 // a.u. and counts.
 std::optional<ValueScale> ParseValueScale(std::string_view unit);
-// nm, um, mm, m, A, cm^-1, eV, THz.
+// Spellings of 1/sr, as PlainUnit gives them.
+bool IsPerSteradian(std::string_view unit);
+// nm, um, mm, m, A; wavenumbers (cm^-1, m^-1, um^-1), eV, THz, GHz, Hz.
 std::optional<WavelengthUnit> ParseWavelengthUnit(std::string_view unit);
 
 double RadiansPerUnit(AngleUnit unit);

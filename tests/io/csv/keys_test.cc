@@ -104,5 +104,16 @@ TEST(Units, ScalesOfValuesAndTheirUncertainties) {
   EXPECT_TRUE(HasRemark(missing, "3 samples have no uncertainty"));
 }
 
+TEST(CsvKeys, ASentenceMayStateTheUnit) {
+  for (const char* line : {"# all angles are given in radians", "Angles in radians", "# Angles are radians."}) {
+    const Measurement m = ReadText(std::string(line) + "\ntheta_i,theta_o,dphi,brdf\n0.5,1,0,2\n");
+    EXPECT_EQ(m.conventions.at("angle-unit"), "rad (header)") << line;
+  }
+  for (const char* line : {"# at an angle of 30 deg", "# angles in radians or degrees"}) {
+    const Measurement m = ReadText(std::string(line) + "\ntheta_i,theta_o,dphi,brdf\n0.5,1,0,2\n");
+    EXPECT_EQ(m.conventions.at("angle-unit"), "deg (default)") << line;
+  }
+}
+
 }  // namespace
 }  // namespace lobefit

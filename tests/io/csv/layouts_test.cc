@@ -138,5 +138,62 @@ TEST(CsvLayouts, ASampleThatIsTurned) {
   ExpectSample(column, 1, 30, -50, 40, 40, 2);
 }
 
+TEST(CsvLayouts, CosinesInPlaceOfAngles) {
+  for (const char* names : {"cos_theta_i,cos_theta_o,dphi", "cos(theta_i),cos(theta_o),dphi (deg)", "mu0,mu,raa"}) {
+    const Measurement m = ReadText(std::string(names) + ",brdf\n0.5,1,0,2\n1,0.5,90,3\n1.5,0.5,0,4\n");
+    ASSERT_EQ(m.samples.size(), 2U) << names;
+    ExpectSample(m, 0, 60, 0, 0, 0, 2);
+    ExpectSample(m, 1, 0, 0, 60, 90, 3);
+    EXPECT_EQ(m.set_aside[SetAsideReason::kNotFinite], 1U) << "a cosine of 1.5";
+  }
+  // Beside the angles they are not needed.
+  const Measurement m = ReadText("theta_i,theta_o,dphi,cos_theta_i,brdf\n60,0,0,0.123,2\n");
+  ExpectSample(m, 0, 60, 0, 0, 0, 2);
+}
+
+TEST(CsvLayouts, TwoDirectionCosinesOfTheViewerAreAsked) {
+  EXPECT_NE(MessageOf("theta_i,alpha_s,beta_s,BRDF\n10,0.1,0.2,1\n").find("axes are not said"), std::string::npos);
+}
+
+TEST(CsvLayouts, PolarisationOfTheLightAndOfTheViewer) {
+  constexpr char kFourRows[] = "10,20,0,s,s,1\n10,20,0,s,p,2\n10,20,0,p,s,4\n10,20,0,p,p,8\n";
+  for (const char* names : {"source pol,detector pol", "incident polarization,analyzer"}) {
+    const Measurement m = ReadText("theta_i,theta_o,dphi," + std::string(names) + ",brdf\n" + kFourRows);
+    ASSERT_EQ(m.samples.size(), 1U) << names;
+    EXPECT_EQ(m.samples.values[0][0], 7.5) << "half of the sum";
+  }
+  const Measurement joined =
+      ReadText("theta_i,theta_o,dphi,pol,brdf\n10,20,0,ss,1\n10,20,0,sp,2\n10,20,0,ps,4\n10,20,0,pp,8\n");
+  ASSERT_EQ(joined.samples.size(), 1U);
+  EXPECT_EQ(joined.samples.values[0][0], 7.5);
+  const Measurement turned = ReadText("theta_i,theta_o,dphi,polarizer angle (deg),brdf\n10,20,0,0,1\n10,20,0,90,2\n");
+  EXPECT_EQ(turned.samples.values[0][0], 1.5);
+  ReadOptions options;
+  options.where = "source pol=s";
+  EXPECT_NE(MessageOf("theta_i,theta_o,dphi,source pol,detector pol,brdf\n" + std::string(kFourRows), options)
+                .find("choose one of 'detector pol' too"),
+            std::string::npos);
+  // Rows with a wavelength of their own may all say the same.
+  EXPECT_EQ(ReadText("wavelength (nm),theta_i,theta_o,pol,brdf\n550,10,20,u,1\n650,10,20,u,2\n").channels.size(), 2U);
+}
+
+TEST(CsvLayouts, TwoPolarisationsInColumnsAreAsked) {
+  for (const char* names : {"BRDF_s,BRDF_p", "f_s,f_p"}) {
+    const std::string text = "theta_i,theta_o,dphi," + std::string(names) + "\n10,20,0,1,2\n";
+    EXPECT_NE(MessageOf(text).find("are two polarisations; choose one with --value-column"), std::string::npos)
+        << names;
+  }
+  EXPECT_EQ(ReadText("theta_i,theta_o,dphi,f_s\n10,20,0,1\n").samples.size(), 1U);
+}
+
+TEST(CsvLayouts, AnAngleAboveOrInTheNamesOfATable) {
+  for (const char* head : {"AOI (deg),,\ntheta_o,10,30\n", "theta_o,inc10,inc30\n"}) {
+    const Measurement m = ReadText(std::string(head) + "0,1,2\n20,3,4\n");
+    ASSERT_EQ(m.samples.size(), 4U) << head;
+    ExpectSample(m, 1, 30, 0, 0, 0, 2);
+    ExpectSample(m, 2, 10, 0, 20, 180, 3);
+  }
+}
+
 }  // namespace
 }  // namespace lobefit

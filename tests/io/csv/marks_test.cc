@@ -109,5 +109,58 @@ TEST(CsvMarks, AnglesThatNamesOrUnitsBelie) {
   EXPECT_TRUE(HasRemark(ReadText(mixed), "are the azimuths radians?"));
 }
 
+TEST(CsvMarks, LimitsOfDetectionAndBrackets) {
+  const Measurement m = ReadText("theta_i,theta_o,dphi,brdf\n10,20,0,1\n10,30,0,<LOD\n10,40,0,(null)\n10,50,0,> 100\n");
+  EXPECT_EQ(m.samples.size(), 1U);
+  EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 3U);
+}
+
+TEST(CsvMarks, AColumnOfFlagsIsNamed) {
+  constexpr char kFlagged[] = "theta_i,theta_o,dphi,brdf,valid\n10,20,0,1,1\n10,30,0,9,0\n";
+  EXPECT_TRUE(HasRemark(ReadText(kFlagged), "the column 'valid' may say which rows are good"));
+  ReadOptions options;
+  options.where = "valid=1";
+  EXPECT_EQ(ReadText(kFlagged, options).samples.size(), 1U);
+}
+
+TEST(CsvMarks, WavelengthsWithinAToleranceAreOneChannel) {
+  constexpr char kJitter[] =
+      "theta_i,theta_o,wavelength_nm,brdf\n10,20,549.99,1\n10,30,550.01,2\n10,20,650.02,3\n10,30,650,4\n"
+      "10,20,550.02,9\n";
+  // 549.99 and 550.02 of one pair: without the option they are channels of their own, of which no pair has all.
+  EXPECT_NE(MessageOf(kJitter).find("5 different wavelengths, and none of the 2 pairs of directions has all of them"),
+            std::string::npos);
+  ReadOptions options;
+  options.wavelength_tolerance_nm = 0.03;
+  const Measurement m = ReadText(kJitter, options);
+  ASSERT_EQ(m.samples.size(), 2U);
+  ASSERT_EQ(m.channels.size(), 2U);
+  EXPECT_NEAR(m.channels.wavelengths_nm[0], 550.0067, 1e-4);
+  EXPECT_EQ(m.samples.values[1][1], 4);
+  EXPECT_EQ(m.set_aside[SetAsideReason::kDuplicate], 1U);
+}
+
+// Each is refused before any of it is looked at.
+TEST(CsvLimits, ColumnsWavelengthsAndLines) {
+  std::string names = "theta_i,theta_o,dphi", row = "10,20,0";
+  for (int i = 0; i < 5000; ++i) {
+    names += "," + std::to_string(400 + i) + "nm";
+    row += ",1";
+  }
+  EXPECT_NE(MessageOf(names + "\n" + row + "\n").find("5000 columns hold wavelengths; at most 4096 are read"),
+            std::string::npos);
+  std::string many = "theta_i,theta_o,brdf";
+  for (int i = 0; i < 70000; ++i) many += ",x";
+  EXPECT_NE(MessageOf(many + "\n").find("line 1: has 70003 fields; at most 65536 columns are read"), std::string::npos);
+  EXPECT_NE(MessageOf("theta_i,theta_o,brdf\n10,20,1\n" + std::string(std::size_t{5} << 20, '1'))
+                .find("line 3: has 5242880 bytes; at most 4194304 are read"),
+            std::string::npos);
+  std::string wander = "theta_i,theta_o,wavelength_nm,brdf\n";
+  for (int i = 0; i < 5000; ++i)
+    wander += "10," + std::to_string(i % 80) + "," + std::to_string(400 + 0.1 * i) + ",1\n";
+  EXPECT_NE(MessageOf(wander).find("5000 different wavelengths at 80 pairs of directions; at most 4096"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace lobefit

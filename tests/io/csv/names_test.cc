@@ -229,5 +229,52 @@ TEST(CsvNames, ElevationsCountFromTheSurface) {
   ExpectSample(m, 0, 30, 10, 50, 130, 0.5);
 }
 
+// Columns of the same four meanings in the languages of laboratories.
+TEST(CsvNames, InOtherLanguages) {
+  for (const char* name : {"Einfallswinkel [°]", "Einfallszenit [Grad]", "Beleuchtungswinkel", "invalshoek (°)",
+                           "infallsvinkel", "kąt padania [°]", "ângulo de incidência (graus)", "úhel dopadu",
+                           "угол падения (град)", "入射角(度)", "入射天顶角(°)", "입사각(도)"})
+    ExpectCoordinate(name, Coordinate::kThetaI);
+  for (const char* name : {"Beobachtungswinkel [°]", "Ausfallszenit [Grad]", "kijkhoek (°)",
+                           "Ángulo de observación (°)", "Angolo di osservazione [°]", "kąt obserwacji [°]",
+                           "угол наблюдения", "受光角(度)", "观测天顶角(°)", "反射角", "반사각(도)"})
+    ExpectCoordinate(name, Coordinate::kThetaO);
+  for (const char* name : {"Azimutdifferenz [°]", "azimutverschil", "Azimut relativo", "azymut względny [°]",
+                           "относительный азимут (град)", "方位角差(度)", "相对方位角(°)"})
+    ExpectCoordinate(name, Coordinate::kDeltaPhi);
+  EXPECT_EQ(*ClassifyColumn("Einfallszenit [Grad]").angle_unit, AngleUnit::kDegrees);
+  EXPECT_EQ(*ClassifyColumn("入射角（弧度）").angle_unit, AngleUnit::kRadians);
+  EXPECT_NE(ClassifyColumn("theta_i [grad]").problem, "") << "the gon beside English words";
+  EXPECT_EQ(ClassifyColumn("FDRB (sr-1)").role, ColumnRole::kValue);
+  EXPECT_EQ(ClassifyColumn("ДФОС (1/ср)").role, ColumnRole::kValue);
+  EXPECT_EQ(ClassifyColumn("波長(nm)").role, ColumnRole::kWavelength);
+  EXPECT_EQ(ClassifyColumn("±").role, ColumnRole::kSigma);
+  for (const char* names : {"Rot,Grün,Blau", "rouge,vert,bleu", "rojo,verde,azul"})
+    EXPECT_EQ(ReadText("theta_i,theta_o," + std::string(names) + "\n10,20,1,2,3\n").channels.names,
+              (std::vector<std::string>{"R", "G", "B"}));
+}
+
+TEST(CsvNames, UnitsThatHaveSignsOfTheirOwn) {
+  ExpectCoordinate("source_el", Coordinate::kThetaI);
+  ExpectCoordinate("thetaIRad", Coordinate::kThetaI);
+  EXPECT_EQ(*ClassifyColumn("thetaIRad").angle_unit, AngleUnit::kRadians);
+  for (const char* name : {"brdf_1/sr", "brdf_per_sr", "brdf_sr-1", "BRDF sr^-1", "BRDF (inverse steradian)"}) {
+    const CsvColumn column = ClassifyColumn(name);
+    EXPECT_EQ(column.role, ColumnRole::kValue) << name;
+    EXPECT_EQ(column.problem, "") << name;
+  }
+  EXPECT_EQ(ClassifyColumn("1000 cm-1").wavelength_nm, 10000);
+  EXPECT_EQ(ClassifyColumn("frequency (THz)").role, ColumnRole::kWavelength);
+  EXPECT_EQ(ClassifyColumn("frequency (GHz)").wavelength_unit->ToNm(299792.458), 1000);
+  EXPECT_EQ(ClassifyColumn("wavenumber (1/m)").wavelength_unit->ToNm(1e6), 1000);
+  EXPECT_EQ(ClassifyColumn("frequency").role, ColumnRole::kUnknown) << "it may be that of a chopper";
+}
+
+TEST(CsvNames, AnUnknownUnitOfAnAngleIsNotPassedOver) {
+  EXPECT_NE(
+      MessageOf("theta_i,theta_o,dphi [turn],brdf\n10,20,0.5,1\n").find("'dphi [turn]', which speaks of an angle"),
+      std::string::npos);
+}
+
 }  // namespace
 }  // namespace lobefit

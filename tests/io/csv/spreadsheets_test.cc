@@ -87,5 +87,83 @@ TEST(Spreadsheets, TheFooterIsSaid) {
   EXPECT_TRUE(HasRemark(m, "2 lines after the last row, from line 3 on, hold no row: 'End of data'"));
 }
 
+TEST(Spreadsheets, DecimalCommasInQuotesBetweenCommas) {
+  const Measurement m = ReadText("theta_i,theta_o,dphi,brdf\n10,20,0,\"0,5\"\n10,\"20,5\",0,\"1,25\"\n");
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 0, 10, 0, 20, 0, 0.5);
+  ExpectSample(m, 1, 10, 0, 20.5, 0, 1.25);
+}
+
+TEST(Spreadsheets, NumbersAsFortranAndPeopleWriteThem) {
+  const Measurement m = ReadText("theta_i theta_o dphi brdf\n10° 20° 0 0.5D-01\n10 25 0 5.0d+00\n");
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 0, 10, 0, 20, 0, 0.05);
+  ExpectSample(m, 1, 10, 0, 25, 0, 5);
+  EXPECT_NE(MessageOf("theta_i,theta_o,dphi,brdf\n10,20,0,5%\n10,25,0,6%\n").find("take the percent signs off"),
+            std::string::npos);
+  EXPECT_NE(MessageOf("theta_i,theta_o,brdf\n10°30',20°00',5\n").find("'10°30'', which is not a number"),
+            std::string::npos);
+}
+
+TEST(Spreadsheets, TheNamesAgainInAnotherSpelling) {
+  EXPECT_EQ(ReadText("theta_i,theta_o,dphi,brdf\n10,20,0,1\nTheta_I, Theta_O, dPhi, BRDF\n30,20,0,1\n").samples.size(),
+            2U);
+  EXPECT_NE(MessageOf("theta_i,theta_o,dphi,brdf\n10,20,0,1\ntheta_o,theta_i,dphi,brdf\n30,20,0,1\n")
+                .find("line 3: column 1 (theta_i) is 'theta_o'"),
+            std::string::npos);
+}
+
+TEST(Spreadsheets, SummariesBelowTheRows) {
+  const Measurement m = ReadText("theta_i,theta_o,dphi,brdf\n10,20,0,1\n10,30,0,2\nAverage,25,0,1.5\n");
+  EXPECT_EQ(m.samples.size(), 2U);
+  EXPECT_TRUE(HasRemark(m, "1 line after the last row, from line 4 on"));
+}
+
+TEST(Spreadsheets, ATitleOfNumbersIsNoRow) {
+  EXPECT_EQ(ReadText("My lab\nDate: 1,2,3,4\n\ntheta_i,theta_o,dphi,brdf\n10,20,0,1\n").samples.size(), 1U);
+}
+
+TEST(Spreadsheets, AHeadingOverAnEmptyCell) {
+  const Measurement m = ReadText("Incidence,,Scatter,,BRDF\ntheta,phi,theta,phi,\n10,20,30,40,5\n");
+  ASSERT_EQ(m.samples.size(), 1U);
+  ExpectSample(m, 0, 10, 20, 30, 40, 5);
+}
+
+TEST(Spreadsheets, RowNumbersOfRWithoutAName) {
+  const Measurement m = ReadText("\"theta_i\" \"theta_o\" \"dphi\" \"brdf\"\n\"1\" 10 20 0 5\n\"2\" 10 30 0 6\n");
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 1, 10, 0, 30, 0, 6);
+  EXPECT_TRUE(HasRemark(m, "it counts the rows"));
+  // Not where the numbers do not count.
+  EXPECT_NE(MessageOf("theta_i theta_o dphi brdf\n1 10 20 0 5\n3 10 30 0 6\n").find("has 5 fields"), std::string::npos);
+}
+
+TEST(Spreadsheets, RowsWithoutNamesByTheirNumbers) {
+  ReadOptions options;
+  options.columns = "theta_i=#1,theta_o=#2,dphi=#3,f=#4";
+  const Measurement m = ReadText("10,20,0,5\n10,30,90,6\n", options);
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 1, 10, 0, 30, 90, 6);
+}
+
+TEST(Spreadsheets, ATitleWithItsValueIsNoHeading) {
+  for (const char* head : {"Scatter Table\nIncident Angle\t30\nPolar\tAzimuth\tBSDF\n0\t0\t1\n20\t180\t2\n",
+                           "AOI = 30\nWavelength 0.633\nTheta Phi BRDF\n0 0 1\n20 180 2\n"}) {
+    const Measurement m = ReadText(head);
+    ASSERT_EQ(m.samples.size(), 2U) << head;
+    ExpectSample(m, 1, 30, 0, 20, 180, 2);
+  }
+}
+
+TEST(Spreadsheets, StandardUncertaintyBesideAnExpandedOne) {
+  const Measurement m = ReadText("theta_i,theta_o,BRDF,u_BRDF,U_BRDF\n10,20,2,0.1,0.2\n10,30,4,0.1,0.2\n");
+  EXPECT_EQ(m.samples.weight.size(), 2U);
+}
+
+TEST(Spreadsheets, JsonOfAnotherKindIsSaid) {
+  EXPECT_NE(MessageOf("[{\"theta_i\": 10, \"theta_o\": 20, \"brdf\": 1}]").find("is JSON of a kind that is not known"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -54,6 +54,19 @@ TEST(Mountain, LightFromBehindTurnsTheSampleAboutY) {
   EXPECT_NEAR(m.samples.values[0][0], 2, 1e-14);
 }
 
+TEST(Mountain, FilesThatWereJoinedAreReadAsTheirParts) {
+  const Measurement m = ReadBytes(ReadMountain,
+                                  "#format: theta phi DSF\n#incident_angle 40 180\n#datapoints_in_file: 1\n60 10 0.25\n"
+                                  "#intheta 20\n#inphi 0\n#datapoints_in_file: 2\n#format: theta phi DSF\n60 10 1\n"
+                                  "# a comment\n0 0 2\n#intheta 30\n60 10 3\n");
+  ASSERT_EQ(m.samples.size(), 4U);
+  ExpectAngles(m.samples.wi(0), 40, 180);
+  ExpectAngles(m.samples.wi(1), 20, 0);
+  ExpectAngles(m.samples.wi(2), 20, 0);
+  ExpectAngles(m.samples.wi(3), 30, 0);
+  EXPECT_NEAR(m.samples.values[0][3], 6, 1e-14);
+}
+
 TEST(Mountain, SaysWhatIsWrongAndWhere) {
   const std::string head = "#format: theta phi DSF\n#incident_angle 40 180\n";
   EXPECT_EQ(ErrorOf(ReadMountain, "#format: theta phi BRF\n"),
@@ -68,7 +81,10 @@ TEST(Mountain, SaysWhatIsWrongAndWhere) {
       "towards the source");
   EXPECT_EQ(ErrorOf(ReadMountain, head + "1 2\n"), "line 3: has 2 fields; the header announces theta phi and 1 value");
   EXPECT_EQ(ErrorOf(ReadMountain, head + "1 2 3\n#intheta 3\n"),
-            "line 4: a header line stands after the first row; all header lines come before the rows");
+            "line 4: the file ends after the header of a part; it has no rows and may be cut off");
+  EXPECT_EQ(ErrorOf(ReadMountain, head + "1 2 3\n#format: theta phi BRDF\n#intheta 3\n#inphi 4\n5 6 7\n"),
+            "line 7: the rows begin to hold other values than those above (#format, #colorimetry); put the parts into "
+            "files of their own");
   EXPECT_EQ(ErrorOf(ReadMountain, head + "#datapoints_in_file: 2\n1 2 3"),
             "line 4: the file ends after 1 rows, but line 3 announces 2 (#datapoints_in_file); it may be cut off");
   EXPECT_EQ(ErrorOf(ReadMountain, head + "120 2 3"),

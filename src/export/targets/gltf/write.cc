@@ -91,7 +91,8 @@ Target GltfTarget() {
           .evaluate = EvaluateGltf,
           .write = WriteGltf,
           .recognises = IsGltf,
-          .read = ReadGltf};
+          .read = ReadGltf,
+          .is_text = true};
 }
 
 }  // namespace lobefit

@@ -122,7 +122,8 @@ Target MaterialXTarget() {
           .evaluate = EvaluateMaterialX,
           .write = WriteMaterialX,
           .recognises = IsMaterialX,
-          .read = ReadMaterialX};
+          .read = ReadMaterialX,
+          .is_text = true};
 }
 
 }  // namespace lobefit

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "lobefit/base/printable.h"
 #include "lobefit/export/targets/spectra.h"
 #include "lobefit/export/targets/text.h"
 
@@ -63,16 +64,17 @@ MitsubaComponent MitsubaDiffuse(const Spectrum& reflectance, double share, const
           fmt::format("{{'type': 'diffuse', 'reflectance': {}}}", python), share};
 }
 
-void Tilt(const std::string& map, const std::string& file, MitsubaComponent* component) {
+void Tilt(const std::string& map, const std::string& file, bool shadowing, MitsubaComponent* component) {
   component->xml = fmt::format(
       "<bsdf type=\"normalmap\">\n  <texture type=\"bitmap\" name=\"normalmap\">\n"
       "    <string name=\"filename\" value=\"{}\"/>\n    <boolean name=\"raw\" value=\"true\"/>\n  </texture>\n"
-      "  <boolean name=\"use_shadowing_function\" value=\"false\"/>\n{}\n</bsdf>",
-      map, Indented(component->xml, "  "));
+      "{}{}\n</bsdf>",
+      MarkupText(map), shadowing ? "  <boolean name=\"use_shadowing_function\" value=\"false\"/>\n" : "",
+      Indented(component->xml, "  "));
   component->python = fmt::format(
       "{{'type': 'normalmap', **shadowing,\n 'normalmap': {{'type': 'bitmap', 'filename': "
-      "os.path.join(folder, '{}'), 'raw': True}},\n 'nested_bsdf':\n{}}}",
-      file, Indented(component->python, " "));
+      "os.path.join(folder, {}), 'raw': True}},\n 'nested_bsdf':\n{}}}",
+      PythonString(file), Indented(component->python, " "));
 }
 
 MitsubaComponent Blend(std::vector<MitsubaComponent> components) {

@@ -68,7 +68,12 @@ class MitsubaReader {
       result.remarks.emplace_back("the texture coordinates of the mesh are turned as the file's comment says");
     if (old_names_)
       result.remarks.emplace_back("names are those of scenes before version 2, as Mitsuba 3 upgrades them");
+    constexpr std::size_t kMostNamed = 20;
     for (std::size_t k = 0; k + 1 < all.size(); ++k) {
+      if (k == kMostNamed) {
+        result.remarks.push_back(fmt::format("{} more are left out", all.size() - 1 - k));
+        break;
+      }
       result.remarks.push_back(fmt::format("the bsdf '{}' of line {} is left out: the last one, '{}', is taken",
                                            Excerpt(all[k].attribute("id").value()), xml_.Line(all[k]),
                                            Excerpt(all.back().attribute("id").value())));
@@ -224,7 +229,8 @@ class MitsubaReader {
         xml_.Fail(child, fmt::format("'{}' of the normal map is not understood; filename and raw are", Excerpt(name)));
       }
     }
-    const std::filesystem::path png = FindMap(file_.path, Named(texture, "filename").attribute("value").value());
+    const std::filesystem::path png =
+        FindMap(file_.path, XmlFile::Unescaped(Named(texture, "filename").attribute("value").value()));
     return RotateZ(NormalOfPng(FileBytes(png).bytes(), 1, png), rotation_);
   }
 

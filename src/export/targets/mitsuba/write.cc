@@ -38,12 +38,16 @@ bool IsClampedInSpectralVariants(const FittedBrdf& fit, const Surface& surface) 
 }
 
 // What the user has to know beside loading the file.
-std::vector<std::string> Notes(const FittedBrdf& fit, const Surface& surface, const std::vector<std::string>& maps) {
+std::vector<std::string> Notes(const FittedBrdf& fit, const Surface& surface, const std::vector<std::string>& maps,
+                               bool old_mitsuba) {
   std::vector<std::string> notes;
   if (!maps.empty()) {
     notes.emplace_back(
-        "The XML needs Mitsuba 3.7.1 or newer: before, take out the lines with use_shadowing_function, which 3.0 to "
-        "3.7.0 refuse and do not need. The Python file asks for the version itself.");
+        old_mitsuba ? "The XML is for Mitsuba 3.0 to 3.7.0: from 3.7.1 on it is darker at grazing angles; export it "
+                      "without --mitsuba-version there. The Python file asks for the version itself."
+                    : "The XML needs Mitsuba 3.7.1 or newer; --mitsuba-version 3.7.0 of the export writes it for "
+                      "3.0 to 3.7.0, which refuse use_shadowing_function. The Python file asks for the version "
+                      "itself.");
     notes.push_back(MapComment(maps, "the main scene file, also where this file is included from another folder"));
   }
   if (IsClampedInSpectralVariants(fit, surface)) {
@@ -82,7 +86,7 @@ WrittenFiles WriteMitsuba(const FittedBrdf& fit, const WriteContext& context) {
       WriteFileAtomically(map, NormalMapPng(RotateZ(surface.lobes[l].normal, -rotation)));
       written.files.push_back(map);
       maps.push_back(context.map_path + map.filename().string());
-      Tilt(maps.back(), map.filename().string(), &components.back());
+      Tilt(maps.back(), map.filename().string(), !context.old_mitsuba, &components.back());
     }
   }
   if (fit.HasDiffuse() || components.empty()) {
@@ -93,7 +97,7 @@ WrittenFiles WriteMitsuba(const FittedBrdf& fit, const WriteContext& context) {
   }
   const MitsubaComponent whole = Blend(std::move(components));
 
-  written.notes = Notes(fit, surface, maps);
+  written.notes = Notes(fit, surface, maps, context.old_mitsuba);
   std::vector<std::string> header = context.header;
   header.insert(header.end(), written.notes.begin(), written.notes.end());
   for (const std::string& line : RotationComment(rotation)) header.push_back(line);
@@ -143,7 +147,8 @@ Target MitsubaTarget() {
           .evaluate = EvaluateMitsuba,
           .write = WriteMitsuba,
           .recognises = IsMitsuba,
-          .read = ReadMitsuba};
+          .read = ReadMitsuba,
+          .is_text = true};
 }
 
 }  // namespace lobefit

@@ -209,7 +209,11 @@ class PbrtReader {
 
   void Add(const std::string& name, double weight, int depth, Surface* surface) {
     const auto found = entries_.find(name);
-    if (found == entries_.end() || depth > 8) {
+    constexpr int kMostDepth = 8;
+    if (depth > kMostDepth) {
+      throw InputError(fmt::format("{}: mixtures hold mixtures more than {} deep", path_.string(), kMostDepth));
+    }
+    if (found == entries_.end()) {
       throw InputError(fmt::format("{}: the material '{}' is not defined in the file", path_.string(), Excerpt(name)));
     }
     used_.insert(name);

@@ -181,7 +181,8 @@ Target PbrtTarget() {
           .evaluate = EvaluatePbrt,
           .write = WritePbrt,
           .recognises = IsPbrt,
-          .read = ReadPbrt};
+          .read = ReadPbrt,
+          .is_text = true};
 }
 
 }  // namespace lobefit
