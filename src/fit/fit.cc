@@ -12,6 +12,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
+#include "lobefit/fit/inference/energy_balance.h"
 #include "lobefit/fit/inference/misfit.h"
 #include "lobefit/fit/inference/noise_bias.h"
 #include "lobefit/fit/inference/rivals.h"
@@ -387,6 +388,13 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         100 * std::max(0.0, explained)));
   }
   material.verdict = JudgeFit(problem, layout, best.u, samples, incidences, explained, material.misfit->flagged, &pool);
+  material.energy = EnergyBalance{};
+  material.energy->absolute = !recipe.free_scale;
+  if (!recipe.free_scale) {
+    material.energy = BalanceAt(SpreadIncidences(incidences, recipe.theta_max), recipe.model, material.Values(),
+                                material.channels, &pool);
+    JudgeEnergy(*material.energy, &*material.verdict);
+  }
   material.termination = {best.converged,
                           DeterminedButForCurves(uncertainty, layout) && !has_rival && !(explained < kLeastExplained),
                           best.message, best.iterations};
