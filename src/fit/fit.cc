@@ -20,6 +20,7 @@
 #include "lobefit/fit/inference/verdict.h"
 #include "lobefit/fit/instrument.h"
 #include "lobefit/fit/instrument_report.h"
+#include "lobefit/fit/keep_energy.h"
 #include "lobefit/fit/last_descent.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/prediction.h"
@@ -222,6 +223,7 @@ struct Found {
       throw InputError(measurement.source +
                        ": no start of the fit has a finite cost; look at the values with `lobefit info`");
     }
+    energy = KeepEnergy(recipe, layout, incidences, measurement.channels.names, &problem, &minima, pool);
     uncertainty = EstimateUncertainty(problem, layout, best().u, incidences, pool);
   }
   const Solution& best() const { return minima[0].solution; }
@@ -230,6 +232,7 @@ struct Found {
   Problem problem;
   std::vector<DistinctMinimum> minima;
   LastDescent last;
+  std::unique_ptr<EnergyRule> energy;
   Uncertainty uncertainty;
 };
 

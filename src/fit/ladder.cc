@@ -41,7 +41,7 @@ struct Rung {
   std::vector<double> mean_square;      // of each fold's test
   std::vector<ParameterValues> shapes;  // [lobe] its ellipse on the subsample
   bool above_one = false;               // the first lobe's reflectance is at its bound
-  bool creates_energy = false;          // its albedo exceeds kCreatesEnergy, and the values are calibrated
+  bool creates_energy = false;          // CreatesEnergy
   double mean() const {
     return std::accumulate(mean_square.begin(), mean_square.end(), 0.0) / static_cast<double>(mean_square.size());
   }
@@ -207,7 +207,7 @@ class Ladder {
       }
       rung.mean_square.assign(folds_.size(), kNan);
       if (!recipe.free_scale)
-        rung.creates_energy = BalanceAt(wi_, recipe.model, values, channels_, &pool_).albedo > kCreatesEnergy;
+        rung.creates_energy = CreatesEnergy(BalanceAt(wi_, recipe.model, values, channels_, &pool_));
       pool_.Run(folds_.size(), [&](std::size_t k) {
         ThreadPool alone(1);
         const Problem training(folds_[k].training, recipe), test(folds_[k].test, recipe);
@@ -323,7 +323,7 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
 void AddAdvice(Material* material) {
   if (!material->verdict) return;
   Verdict& verdict = *material->verdict;
-  if (!verdict.advice.empty()) return;
+  if (material->energy && CreatesEnergy(*material->energy)) return;  // what to do about that is said
   if (verdict.kind != VerdictKind::kRough && verdict.kind != VerdictKind::kDoesNotDescribe) return;
   const TriedModel *best = nullptr, *chosen = nullptr;
   for (const TriedModel& model : material->tried) {

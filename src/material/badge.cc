@@ -22,7 +22,7 @@ Badge BadgeOf(const Material& material) {
       return {BadgeMark::kGood, "close" + error};
     default: {
       // What is above 1 by less is no reason for the word.
-      const bool creates = material.energy && material.energy->absolute && material.energy->albedo > kCreatesEnergy;
+      const bool creates = material.energy && CreatesEnergy(*material.energy);
       return {BadgeMark::kRough,
               creates ? fmt::format("reflects more than it receives, albedo {:.3g}{}", material.energy->albedo, error)
                       : "rough" + error};

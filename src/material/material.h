@@ -81,6 +81,7 @@ struct EnergyBalance {
 };
 // Values of goniometers are calibrated to some per cent: an albedo above this one is no error of calibration.
 inline constexpr double kCreatesEnergy = 1.05;
+inline bool CreatesEnergy(const EnergyBalance& balance) { return balance.absolute && balance.albedo > kCreatesEnergy; }
 // "an albedo of 8.2 at theta_i 60, phi_i 0 degrees in value, above 1 at 11 of 12 incident directions"; empty where none
 // is above 1.005.
 std::string EnergyText(const EnergyBalance& balance);

@@ -16,10 +16,10 @@ const std::vector<Choice<Weighting>>& WeightingChoices() {
   return choices;
 }
 
-const std::vector<Choice<EnergyRule>>& EnergyChoices() {
-  static const std::vector<Choice<EnergyRule>> choices = {
-      {EnergyRule::kFree, "free", "a lobe's reflectance is at most 1, the sum of all may be more"},
-      {EnergyRule::kConserving, "conserving", "the albedo is at most 1 at the measured incident directions"},
+const std::vector<Choice<EnergyChoice>>& EnergyChoices() {
+  static const std::vector<Choice<EnergyChoice>> choices = {
+      {EnergyChoice::kFree, "free", "a lobe's reflectance is at most 1, the sum of all may be more"},
+      {EnergyChoice::kConserving, "conserving", "the albedo is at most 1 at the measured incident directions"},
   };
   return choices;
 }

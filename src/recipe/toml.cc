@@ -346,7 +346,7 @@ std::string ToToml(const Recipe& recipe) {
   // Where it was not given, the fit may choose another.
   if (recipe.metric_given || recipe.metric != Recipe().metric)
     text += fmt::format("metric = \"{}\"\n", NameOf(MetricChoices(), recipe.metric));
-  if (recipe.energy != EnergyRule::kFree)
+  if (recipe.energy != EnergyChoice::kFree)
     text += fmt::format("energy = \"{}\"\n", NameOf(EnergyChoices(), recipe.energy));
   if (recipe.loss != Loss::kNone) {
     text += fmt::format("loss = {{ kind = \"{}\", scale = {} }}\n", NameOf(LossChoices(), recipe.loss),

@@ -20,10 +20,10 @@ std::vector<Vec3> SpreadIncidences(const Incidences& incidences, double theta_ma
 }
 
 EnergyBalance BalanceAt(const std::vector<Vec3>& wi, const Model& model, const ParameterValues& values,
-                        const std::vector<std::string>& channels, ThreadPool* pool) {
+                        const std::vector<std::string>& channels, ThreadPool* pool, const FacetGrid& grid) {
   std::vector<std::vector<double>> albedo(wi.size());
   pool->Run(wi.size(),
-            [&](std::size_t k) { albedo[k] = DirectionalAlbedo(model, values, channels.size(), wi[k], kBalanceGrid); });
+            [&](std::size_t k) { albedo[k] = DirectionalAlbedo(model, values, channels.size(), wi[k], grid); });
   EnergyBalance balance;
   balance.incidences = wi.size();
   for (std::size_t k = 0; k < wi.size(); ++k) {
@@ -39,8 +39,7 @@ EnergyBalance BalanceAt(const std::vector<Vec3>& wi, const Model& model, const P
 }
 
 void JudgeEnergy(const EnergyBalance& balance, Verdict* verdict) {
-  if (!balance.absolute || balance.albedo <= kCreatesEnergy) return;
-  if (verdict->kind == VerdictKind::kDoesNotDescribe) return;
+  if (!CreatesEnergy(balance) || verdict->kind == VerdictKind::kDoesNotDescribe) return;
   verdict->kind = VerdictKind::kRough;
   verdict->advice =
       "it reflects more than it receives: --energy conserving keeps it from that, and --scale free says that the "

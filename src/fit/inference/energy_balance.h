@@ -19,7 +19,8 @@ std::vector<Vec3> SpreadIncidences(const Incidences& incidences, double theta_ma
 
 // The largest directional albedo of the model at the directions, over all channels.
 EnergyBalance BalanceAt(const std::vector<Vec3>& wi, const Model& model, const ParameterValues& values,
-                        const std::vector<std::string>& channels, ThreadPool* pool);
+                        const std::vector<std::string>& channels, ThreadPool* pool,
+                        const FacetGrid& grid = kBalanceGrid);
 
 // A model that creates energy describes what was measured, and no surface: at best rough, with what to do about it.
 // Does nothing for values of a free scale.
