@@ -65,15 +65,18 @@ TEST(KeepEnergy, KeepsTheAlbedoAtMostOneAndIsTheBestThatDoes) {
   // The blue channel was never above 1, and may move with the common shape only.
   EXPECT_NEAR(kept.parameters[5].values[2], free.parameters[5].values[2], 0.05);
   // Shrinking the free fit's amplitudes until it keeps energy costs more.
-  Measurement measurement = Synthetic(BrightTruth(), StandardLayout(), 0.02, 5);
-  Recipe scaled = DefaultRecipe(BrightTruth().model, "scaled");
-  for (std::size_t i = 0; i < free.parameters.size(); ++i) {
-    std::vector<double> values = free.parameters[i].values;
-    for (double& value : values) value *= i >= 5 ? 1 / LargestAlbedo(free) : 1;
-    scaled.parameters[i].fixed = values;
+  const Measurement measurement = Synthetic(BrightTruth(), StandardLayout(), 0.02, 5);
+  const Recipe recipe = DefaultRecipe(BrightTruth().model, "scaled");
+  const Layout layout(recipe, {"R", "G", "B"});
+  const ParameterValues values = free.Values();
+  std::vector<double> u = layout.FromShapes({{values[0][0], values[1][0], 0, 0, values[4][0]}});
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t k = 0; k < 2; ++k)
+      u[static_cast<std::size_t>(layout.linear(c)[k].index)] = values[5 + k][c] / LargestAlbedo(free);
   }
-  scaled.parameters.back().fixed.clear();
-  EXPECT_LT(kept.cost, Fit(scaled, {}, &measurement).cost);
+  ThreadPool pool(1);
+  const Problem problem(measurement.samples, recipe);
+  EXPECT_LT(kept.cost, problem.Sum(layout.ToKernel(u.data()), false, &pool).sum_rho / 2);
 }
 
 TEST(KeepEnergy, ChangesNothingThatKeepsEnergyAnyway) {
