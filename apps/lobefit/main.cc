@@ -7,6 +7,7 @@
 #include <exception>
 #include <new>
 
+#include "help.h"
 #include "verb.h"
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -25,20 +26,30 @@ namespace {
 struct Verb {
   const char* name;
   const char* description;
+  const char* example;
   VerbSetup set_up;
 };
 constexpr Verb kVerbs[] = {
-    {"info", "describe a measurement file", SetUpInfo},
-    {"fit", "fit a reflectance model to a measurement file", SetUpFit},
-    {"batch", "fit many files, here or as shards on a cluster; goes on where it was", SetUpBatch},
-    {"maps", "fit every texel of an image stack: maps of normals and reflectance with errors", SetUpMaps},
-    {"compare", "fit several recipes, judge them on held-out directions, recommend one", SetUpCompare},
-    {"report", "draw the report of a fitted material against its measurement again", SetUpReport},
-    {"convert", "write a measurement file in another format, and say what was lost", SetUpConvert},
-    {"export", "write a fitted material for renderers, and say what each cannot carry", SetUpExport},
-    {"synth", "make a synthetic measurement file from a material or recipe", SetUpSynth},
-    {"validate", "make measurements from known parameters, fit them, and check the intervals", SetUpValidate},
-    {"eval", "evaluate a quantity of the papers, with gradient, for rows of CSV", SetUpEval},
+    {"info", "describe a measurement file", "lobefit info sample.csv", SetUpInfo},
+    {"fit", "fit a reflectance model to a measurement file", "lobefit fit sample.csv --recipe ellipsoid", SetUpFit},
+    {"batch", "fit many files, here or as shards on a cluster; goes on where it was",
+     "lobefit batch measurements/ --out database", SetUpBatch},
+    {"maps", "fit every texel of an image stack: maps of normals and reflectance with errors",
+     "lobefit maps stack/ --leave-out 7", SetUpMaps},
+    {"compare", "fit several recipes, judge them on held-out directions, recommend one",
+     "lobefit compare sample.csv --recipes ggx,ggx-anisotropic,ellipsoid", SetUpCompare},
+    {"report", "draw the report of a fitted material against its measurement again",
+     "lobefit report sample.material.json sample.csv --out again.png", SetUpReport},
+    {"convert", "write a measurement file in another format, and say what was lost",
+     "lobefit convert sample.csv sample.binary --to merl", SetUpConvert},
+    {"export", "write a fitted material for renderers, and say what each cannot carry",
+     "lobefit export sample.material.json --to gltf,mitsuba", SetUpExport},
+    {"synth", "make a synthetic measurement file from a material or recipe",
+     "lobefit synth sample.material.json --theta-i 10,30,50 --noise 0.02 --out synthetic.csv", SetUpSynth},
+    {"validate", "make measurements from known parameters, fit them, and check the intervals",
+     "lobefit validate sample.material.json --noise 0.05 --trials 200", SetUpValidate},
+    {"eval", "evaluate a quantity of the papers, with gradient, for rows of CSV", "lobefit eval --list", SetUpEval},
+    {"formats", "list the file formats that are read, and the options of one", "lobefit formats csv", SetUpFormats},
 };
 
 // As a shell takes it.
@@ -61,13 +72,16 @@ void CheckVerb(int argc, char** argv) {
 
 int Run(int argc, char** argv) {
   CheckVerb(argc, argv);
-  CLI::App app("lobefit fits reflectance models to measured BRDF data.");
+  CLI::App app("lobefit fits reflectance models to measured BRDF data.", "lobefit");
+  SetUpHelp("lobefit VERB --help", &app);
   app.set_version_flag("--version", std::string("lobefit ") + Version());
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::help);
   CommonOptions common;
   common.command = CommandLine(argc, argv);
+  common.words.assign(argv + std::min(argc, 1), argv + argc);
   std::function<int()> run;
+  const CLI::App* asked = &app;
   for (const Verb& verb : kVerbs) {
     CLI::App* sub = app.add_subcommand(verb.name, verb.description);
     // Only the verb that was asked for sets up its options: the program starts in a few milliseconds.
@@ -76,6 +90,8 @@ int Run(int argc, char** argv) {
         ->check(CLI::Range(1, 1024));
     sub->add_flag("--json", common.json, "print the result as a JSON document on stdout");
     run = verb.set_up(sub, &common);
+    SetUpHelp(verb.example, sub);
+    asked = sub;
   }
   try {
     app.parse(argc, argv);
@@ -83,7 +99,8 @@ int Run(int argc, char** argv) {
     const bool help = error.get_exit_code() == 0;
     if (help) return app.exit(error);
     const std::string verb = argc > 1 && argv[1][0] != '-' ? std::string(" ") + argv[1] : "";
-    throw UsageError(fmt::format("{}; see `lobefit{} --help`", error.what(), verb));
+    const std::string unknown = UnknownWords(*asked);
+    throw UsageError(fmt::format("{}; see `lobefit{} --help`", unknown.empty() ? error.what() : unknown, verb));
   }
   return run();
 }

@@ -22,10 +22,13 @@ void MeasurementOptions::AddTo(CLI::App* app) {
   const std::vector<ReadOptionEntry>& table = ReadOptionTable();
   words_.resize(table.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const std::string formats = table[i].formats.empty() ? "all formats" : Join(table[i].formats);
-    app->add_option(std::string("--") + table[i].name, words_[i], std::string(table[i].help) + " (" + formats + ")")
+    const std::vector<std::string>& formats = table[i].formats;
+    // Those of formats that few have are in the help of the format.
+    const bool listed = formats.empty() || std::find(formats.begin(), formats.end(), "csv") != formats.end();
+    const std::string of = formats.empty() ? "all formats" : Join(formats);
+    app->add_option(std::string("--") + table[i].name, words_[i], std::string(table[i].help) + " (" + of + ")")
         ->option_text(table[i].allowed)
-        ->group("What the file leaves open");
+        ->group(listed ? "What the file leaves open (of other formats: lobefit formats NAME)" : "");
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -12,7 +13,8 @@ namespace lobefit {
 struct CommonOptions {
   int threads = 0;  // 0: as many as the process may use
   bool json = false;
-  std::string command;  // the whole command line, for the record in results
+  std::string command;             // the whole command line, for the record in results
+  std::vector<std::string> words;  // the same after the program's name
 
   int Threads() const;
 };
@@ -26,6 +28,7 @@ std::function<int()> SetUpCompare(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpConvert(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpExport(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpFit(CLI::App* app, CommonOptions* common);
+std::function<int()> SetUpFormats(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpMaps(CLI::App* app, CommonOptions* common);
 std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common);

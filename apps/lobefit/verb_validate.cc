@@ -4,16 +4,19 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "output.h"
 #include "recipe_options.h"
 #include "synthesis_options.h"
+#include "trial_parts.h"
 #include "verb.h"
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/progress.h"
 #include "lobefit/base/text.h"
+#include "lobefit/batch/results/results.h"
 #include "lobefit/io/read.h"
 #include "lobefit/validate/calibration.h"
 #include "lobefit/validate/calibration_json.h"
@@ -26,14 +29,21 @@
 namespace lobefit {
 namespace {
 
+// Trials on the measurements of others, with an experiment of their own.
+struct ComparedTrials {
+  Experiment experiment;
+  std::vector<Trial> trials;
+};
+
 struct ValidateVerb {
   SynthesisOptions synthesis;
   FittedModel recipe;
   std::string source;
   std::size_t trials = 200;
   std::size_t starts = 8;
-  bool draw = false, self_check = false;
+  bool draw = false, self_check = false, without_instrument = false;
   std::string sweep, picture;
+  TrialParts parts;
 };
 
 // Set by the first SIGINT: trials that run are finished and reported. The second one ends the program.
@@ -58,11 +68,6 @@ ExperimentRequest RequestOf(const ValidateVerb& verb) {
   return request;
 }
 
-std::vector<Trial> RunWithProgress(const Experiment& experiment, std::size_t count, int threads, Progress* progress) {
-  return RunTrials(
-      experiment, count, threads, [&] { progress->Advance(); }, interrupted);
-}
-
 // JSON as it is, text as a terminal may show it.
 template <class Json, class Text>
 void PrintResult(bool json, const Json& to_json, const Text& to_text) {
@@ -81,7 +86,8 @@ int RunSweep(const ValidateVerb& verb, const CommonOptions& common) {
   {
     Progress progress("validate", verb.trials * sweep.points.size());
     for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-      sweep.points[i].trials = RunWithProgress(experiments[i], verb.trials, common.Threads(), &progress);
+      sweep.points[i].trials = RunTrials(
+          experiments[i], verb.trials, common.Threads(), [&] { progress.Advance(); }, interrupted);
       sweep.points[i].calibration = Calibrate(experiments[i], sweep.points[i].trials);
     }
   }
@@ -116,25 +122,59 @@ int RunSelfCheck(const CommonOptions& common) {
   return passed ? kExitDone : kExitFit;
 }
 
-int Report(const Experiment& experiment, const std::vector<Trial>& trials, const CommonOptions& common) {
+// The same fitted as if nothing were known of the instrument, whatever the measurement states.
+Experiment WithoutInstrument(Experiment experiment) {
+  InstrumentRecipe* instrument = &experiment.recipe.instrument;
+  const bool any =
+      experiment.recipe.aperture().any() || instrument->drift || instrument->alignment || instrument->offset;
+  if (!any) {
+    throw UsageError(
+        "--without-instrument shows what a fit through the instrument gains: give --source, --detector, --drift, "
+        "--alignment or --offset too");
+  }
+  *instrument = {};
+  instrument->source = instrument->detector = 0;
+  return experiment;
+}
+
+int Report(const Experiment& experiment, const std::vector<Trial>& trials, const std::optional<ComparedTrials>& without,
+           const CommonOptions& common) {
   const Calibration calibration = Calibrate(experiment, trials);
+  std::optional<Calibration> compared;
+  if (without) compared = Calibrate(without->experiment, without->trials);
   PrintResult(
-      common.json, [&] { return ToJson(experiment, calibration, common.command); },
-      [&] { return ToText(calibration); });
-  if (interrupted) {
-    std::fprintf(stderr, "lobefit: interrupted after %zu of %zu trials\n", calibration.done, calibration.planned);
+      common.json, [&] { return ToJson(experiment, calibration, compared ? &*compared : nullptr, common.command); },
+      [&] {
+        std::string text = ToText(calibration);
+        if (compared)
+          text += "\nThe same measurements, fitted without the instrument (not judged):\n" + TableOf(*compared);
+        return text;
+      });
+  if (calibration.done < calibration.planned) {
+    std::fprintf(stderr, "lobefit: %s%zu of %zu trials are done\n", interrupted ? "interrupted: " : "",
+                 calibration.done, calibration.planned);
+    return kExitMissing;
   }
   return calibration.passed() ? kExitDone : kExitFit;
 }
 
 int RunTrialsOf(const ValidateVerb& verb, const CommonOptions& common) {
   const Experiment experiment = MakeExperiment(RequestOf(verb));
+  std::optional<ComparedTrials> without;
+  if (verb.without_instrument) without = {WithoutInstrument(experiment), {}};
+  if (verb.parts.is_script()) return verb.parts.WriteScript(verb.trials, common);
   std::signal(SIGINT, OnInterrupt);
+  std::signal(SIGTERM, OnInterrupt);
   std::vector<Trial> trials;
   {
-    Progress progress("validate", verb.trials);
-    trials = RunWithProgress(experiment, verb.trials, common.Threads(), &progress);
+    Progress progress("validate", verb.parts.Count(verb.trials) * (without ? 2 : 1));
+    trials = verb.parts.Run(experiment, verb.trials, "", common.Threads(), &progress, interrupted);
+    if (without) {
+      without->trials = verb.parts.Run(without->experiment, verb.trials, "without-instrument", common.Threads(),
+                                       &progress, interrupted);
+    }
   }
+  if (verb.parts.is_part()) return interrupted ? kExitMissing : kExitDone;
   if (experiment.noise == Noise{} && IsSameModel(experiment.recipe.model, experiment.truth.model)) {
     const Recovery recovery = JudgeRecovery(experiment, trials);
     if (!verb.picture.empty()) DrawRecovery(experiment, trials, recovery, verb.picture);
@@ -144,7 +184,7 @@ int RunTrialsOf(const ValidateVerb& verb, const CommonOptions& common) {
     return recovery.passed() ? kExitDone : kExitFit;
   }
   if (!verb.picture.empty()) DrawCalibration(experiment, trials, Calibrate(experiment, trials), verb.picture);
-  return Report(experiment, trials, common);
+  return Report(experiment, trials, without, common);
 }
 
 // A measurement file that carries its truth.
@@ -169,7 +209,7 @@ int RunFile(const ValidateVerb& verb, const CommonOptions& common) {
   experiment.fit.threads = common.Threads();
   const Trial trial = CompareWithTruth(experiment, record->truth, std::move(measurement));
   if (!trial.error.empty()) throw InputError(trial.error);
-  if (common.json) return Report(experiment, {trial}, common);
+  if (common.json) return Report(experiment, {trial}, {}, common);
   Print(fmt::format("{}: made with noise {}, seed {}\n", PrintableName(verb.source), ToText(record->noise),
                     record->seed));
   Print(TrialToText(experiment, trial));
@@ -200,13 +240,17 @@ std::function<int()> SetUpValidate(CLI::App* app, CommonOptions* common) {
       "tilt, incidences, azimuths, detector-step, metric or masking");
   app->add_option("--picture", verb->picture, "draw the result as a PNG file");
   app->add_flag("--self-check", verb->self_check, "a validation of this installation, without a source");
+  app->add_flag("--without-instrument", verb->without_instrument,
+                "fit each measurement also without the instrument that the fit is given, and show both");
   app->add_flag("--draw", verb->draw, "every trial draws a material of the source's kind");
   verb->recipe.AddTo(app);
   verb->synthesis.AddTo(app);
+  verb->parts.AddTo(app);
   return [=] {
     if (verb->self_check) return RunSelfCheck(*common);
     if (verb->source.empty())
       throw UsageError("validate needs a SOURCE or --self-check; see `lobefit validate --help`");
+    verb->parts.Check(!verb->sweep.empty() || IsMeasurementFile(verb->source));
     if (!verb->picture.empty()) CheckPicture(verb->picture, {verb->source});
     if (IsMeasurementFile(verb->source)) return RunFile(*verb, *common);
     return verb->sweep.empty() ? RunTrialsOf(*verb, *common) : RunSweep(*verb, *common);

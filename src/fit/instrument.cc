@@ -12,15 +12,9 @@
 namespace lobefit {
 namespace {
 
-// Width of the narrowest lobe across its narrowest axis in slope space.
-double NarrowestWidth(const KernelModel& kernel) {
+double NarrowestLobe(const KernelModel& kernel) {
   double narrowest = HUGE_VAL;
-  for (const KernelLobe& lobe : kernel.lobes) {
-    const OffCenter o = OffCenterFromSlopeCoordinates(lobe.shape.slope);
-    const double mean = 0.5 * (o.q11 + o.q22), off = std::hypot(0.5 * (o.q11 - o.q22), o.q12);
-    // The smaller eigenvalue as det over the larger one: no cancellation.
-    narrowest = std::min(narrowest, std::exp(lobe.shape.slope.v[2] + lobe.shape.slope.v[4]) / std::sqrt(mean + off));
-  }
+  for (const KernelLobe& lobe : kernel.lobes) narrowest = std::min(narrowest, NarrowestWidth(lobe.shape.slope));
   return narrowest;
 }
 
@@ -138,7 +132,7 @@ void RefineRules(const Problem& problem, const std::vector<std::string>& channel
   constexpr double kRoom = 0.8;
   for (int round = 0; round < kMostRounds && !minima->empty(); ++round) {
     const double made_for = recipe.instrument.finest_width > 0 ? recipe.instrument.finest_width : smaller;
-    const double width = NarrowestWidth(layout->ToKernel(minima->front().solution.u.data()));
+    const double width = NarrowestLobe(layout->ToKernel(minima->front().solution.u.data()));
     if (width >= made_for) return;
     recipe.instrument.finest_width = kRoom * width;
     *layout = Layout(recipe, channels);

@@ -75,6 +75,7 @@ void ReportAlignment(const Layout& layout, const std::vector<double>& u, const U
                      InstrumentUsed* instrument, std::vector<std::string>* remarks) {
   const AlignmentRecipe& recipe = *layout.recipe().instrument.alignment;
   const Eigen::Index first = EntriesOfModel(layout);
+  instrument->azimuths = recipe.azimuths;
   bool told = true, any_tilt = false;
   double worst_share = 0, worst_correlation = 0;
   for (std::size_t k = layout.first_angle(); k < layout.shape_size(); ++k) {
@@ -91,6 +92,9 @@ void ReportAlignment(const Layout& layout, const std::vector<double>& u, const U
     }
     instrument->alignment.push_back(angle);
   }
+  const Eigen::MatrixXd& covariance = uncertainty.has_clusters ? uncertainty.clustered : uncertainty.covariance;
+  const double square = covariance(first, first) * covariance(first + 1, first + 1);
+  if (square > 0) instrument->alignment_correlation = covariance(first, first + 1) / std::sqrt(square);
   if (!any_tilt) return;
   instrument->told_from_tilt = told;
   const double prior = RadiansToDegrees(recipe.prior);

@@ -196,7 +196,36 @@ void ReadParameters(const Reader& reader, Material* material) {
   }
 }
 
-InstrumentUsed ReadInstrument(const Reader& reader, const Json& json) {
+// What pictures and predictions compute with.
+void CheckInstrument(const Reader& reader, InstrumentUsed& instrument, std::size_t channels) {
+  constexpr double kMostHalfAngle = 30.001 * kPi / 180, kMostAngle = 10.001 * kPi / 180;
+  for (const double half_angle : {instrument.source, instrument.detector}) {
+    if (!(half_angle >= 0 && half_angle <= kMostHalfAngle))
+      reader.Fail(
+          fmt::format("a half angle of the instrument is {:g} degrees; allowed are 0 to 30", half_angle * 180 / kPi));
+  }
+  if (instrument.mean != "flux" && instrument.mean != "plain")
+    reader.Fail(fmt::format("the mean of the instrument is '{}'; allowed are flux and plain", instrument.mean));
+  for (const IncidenceGain& gain : instrument.gains) {
+    if (!(gain.gain > 0)) reader.Fail(fmt::format("a gain of the instrument is {:g}; gains are positive", gain.gain));
+  }
+  for (const InstrumentAngle& angle : instrument.alignment) {
+    if (!(std::fabs(angle.value) <= kMostAngle))
+      reader.Fail(fmt::format("the alignment's {} is {:g} degrees; allowed are -10 to 10", angle.name,
+                              angle.value * 180 / kPi));
+  }
+  // Documents of a single turn need not say its azimuth.
+  if (!instrument.alignment.empty() && instrument.azimuths.empty()) instrument.azimuths = {0};
+  const std::size_t turns = instrument.azimuths.size();
+  if (instrument.alignment.size() != (turns == 0 ? 0 : turns + 1))
+    reader.Fail(fmt::format("the alignment has {} angles, {} belong to {} turns of the sample",
+                            instrument.alignment.size(), turns == 0 ? 0 : turns + 1, turns));
+  if (!instrument.offset.empty() && instrument.offset.size() != channels)
+    reader.Fail(
+        fmt::format("the instrument has {} offsets, the document {} channels", instrument.offset.size(), channels));
+}
+
+InstrumentUsed ReadInstrument(const Reader& reader, const Json& json, std::size_t channels) {
   InstrumentUsed instrument;
   instrument.source = DegreesToRadians(reader.Get<double>(json, "source_deg"));
   instrument.detector = DegreesToRadians(reader.Get<double>(json, "detector_deg"));
@@ -221,11 +250,16 @@ InstrumentUsed ReadInstrument(const Reader& reader, const Json& json) {
                                       reader.GetNumbers(angle, "tilt_correlation", 1)[0]});
     }
   }
+  if (json.contains("alignment_correlation"))
+    instrument.alignment_correlation = reader.Get<double>(json, "alignment_correlation");
+  if (json.contains("sample_azimuths_deg"))
+    instrument.azimuths = reader.GetNumbers(json, "sample_azimuths_deg", kPi / 180);
   if (json.contains("told_from_tilt")) instrument.told_from_tilt = reader.Get<bool>(json, "told_from_tilt");
   if (json.contains("offset")) {
     for (const Json& offset : reader.Member(json, "offset"))
       instrument.offset.push_back({reader.Get<double>(offset, "value"), reader.GetNumbers(offset, "stderr", 1)[0]});
   }
+  CheckInstrument(reader, instrument, channels);
   return instrument;
 }
 
@@ -282,7 +316,8 @@ void ReadRest(const Reader& reader, Material* material) {
                         reader.Get<double>(misfit, "probability"), reader.Get<double>(misfit, "size"),
                         reader.Get<std::string>(misfit, "where")};
   }
-  if (root.contains("instrument")) material->instrument = ReadInstrument(reader, reader.Member(root, "instrument"));
+  if (root.contains("instrument"))
+    material->instrument = ReadInstrument(reader, reader.Member(root, "instrument"), material->channels.size());
   for (const auto& [metric, rms] : reader.Member(quality, "errors").items()) {
     material->errors.push_back(
         {metric, rms.is_number() ? rms.get<double>() : std::numeric_limits<double>::quiet_NaN()});

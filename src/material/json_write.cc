@@ -186,6 +186,8 @@ Json InstrumentToJson(const InstrumentUsed& instrument) {
                                  {"prior_deg", RadiansToDegrees(angle.prior)},
                                  {"tilt_correlation", Number(angle.tilt_correlation)}});
   }
+  if (!instrument.alignment.empty()) json["alignment_correlation"] = Number(instrument.alignment_correlation);
+  for (const double azimuth : instrument.azimuths) json["sample_azimuths_deg"].push_back(RadiansToDegrees(azimuth));
   if (instrument.told_from_tilt) json["told_from_tilt"] = *instrument.told_from_tilt;
   for (const InstrumentOffset& offset : instrument.offset)
     json["offset"].push_back({{"value", offset.value}, {"stderr", Number(offset.standard_error)}});

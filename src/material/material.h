@@ -118,6 +118,8 @@ struct InstrumentUsed {
   std::optional<Drift> drift;
   std::vector<IncidenceGain> gains;  // with drift
   std::vector<InstrumentAngle> alignment;
+  double alignment_correlation = 0;      // of e_x and e_y
+  std::vector<double> azimuths;          // of the sample on its stage, one a turn, with alignment
   std::optional<bool> told_from_tilt;    // the alignment; empty: no alignment or no tilt was fitted
   std::vector<InstrumentOffset> offset;  // [channel]; empty: none was fitted
 };

@@ -208,7 +208,7 @@ std::string TrialToText(const Experiment& experiment, const Trial& trial) {
   return text;
 }
 
-std::string ToText(const Calibration& calibration) {
+std::string TableOf(const Calibration& calibration) {
   std::string text = fmt::format("{} of {} trials; {:.3g} s a fit (95 % within {:.3g} s)\n", calibration.done,
                                  calibration.planned, calibration.seconds_median, calibration.seconds_95);
   text += fmt::format(
@@ -230,6 +230,11 @@ std::string ToText(const Calibration& calibration) {
         Percent(judged.within_95), calibration.judge_clustered ? " " + Percent(entry.independent.within_95) : "",
         entry.not_determined > 0 ? fmt::format(" (not determined, and said: {})", entry.not_determined) : "");
   }
+  return text;
+}
+
+std::string ToText(const Calibration& calibration) {
+  std::string text = TableOf(calibration);
   if (calibration.passed()) {
     text += "PASSED: the intervals hold what they say.\n";
   } else {

@@ -70,7 +70,8 @@ Calibration Calibrate(const Experiment& experiment, const std::vector<Trial>& tr
 // One comparison: truth, value, error and how many standard errors they differ by.
 std::string TrialToText(const Experiment& experiment, const Trial& trial);
 
-// A table for people, with the verdict in words.
+// A table for people, without and with the verdict in words.
+std::string TableOf(const Calibration& calibration);
 std::string ToText(const Calibration& calibration);
 
 }  // namespace lobefit

@@ -41,7 +41,7 @@ Json Head(const Experiment& experiment, bool passed, const std::string& command)
           {"metric", NameOf(MetricChoices(), experiment.recipe.metric)}};
 }
 
-Json Document(const Experiment& experiment, const Calibration& calibration, const std::string& command) {
+Json EntriesOf(const Calibration& calibration) {
   Json entries = Json::object();
   for (const EntryCalibration& entry : calibration.entries) {
     entries[entry.entry.name] = {{"unit", entry.entry.unit},
@@ -55,6 +55,10 @@ Json Document(const Experiment& experiment, const Calibration& calibration, cons
                                  {"independent", ToObject(entry.independent)},
                                  {"clustered", ToObject(entry.clustered)}};
   }
+  return entries;
+}
+
+Json Document(const Experiment& experiment, const Calibration& calibration, const std::string& command) {
   Json document = Head(experiment, calibration.passed(), command);
   document.update(Json{
       {"failures", calibration.failures},
@@ -70,15 +74,18 @@ Json Document(const Experiment& experiment, const Calibration& calibration, cons
        {{"median", Number(calibration.seconds_median)}, {"percentile_95", Number(calibration.seconds_95)}}},
       {"misfit_flagged", ToObject(calibration.misfit)},
       {"judged", calibration.judge_clustered ? "clustered" : "independent"},
-      {"parameters", entries},
+      {"parameters", EntriesOf(calibration)},
   });
   return document;
 }
 
 }  // namespace
 
-std::string ToJson(const Experiment& experiment, const Calibration& calibration, const std::string& command) {
-  return Document(experiment, calibration, command).dump(2) + "\n";
+std::string ToJson(const Experiment& experiment, const Calibration& calibration, const Calibration* without,
+                   const std::string& command) {
+  Json document = Document(experiment, calibration, command);
+  if (without != nullptr) document["without_instrument"] = {{"parameters", EntriesOf(*without)}};
+  return document.dump(2) + "\n";
 }
 
 std::string ToJson(const Experiment& experiment, const Recovery& recovery, const std::string& command) {

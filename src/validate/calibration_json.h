@@ -9,7 +9,9 @@
 namespace lobefit {
 
 // Indented by two blanks; NaN as null. `command` is the command line.
-std::string ToJson(const Experiment& experiment, const Calibration& calibration, const std::string& command);
+// `without`: of the same measurements fitted without the instrument; null: not done.
+std::string ToJson(const Experiment& experiment, const Calibration& calibration, const Calibration* without,
+                   const std::string& command);
 
 std::string ToJson(const Experiment& experiment, const Recovery& recovery, const std::string& command);
 

@@ -2,7 +2,7 @@
 
 #include <chrono>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
@@ -27,22 +27,16 @@ std::vector<Ellipsoid> Shapes(const Truth& truth) {
   return shapes;
 }
 
-// The cost function of the fit at the true parameters.
-double CostAt(const Truth& truth, const Recipe& recipe, const Measurement& measurement) {
+// The cost function of the fit at the true parameters; with gains of 1.
+double CostAt(const Truth& truth, const Experiment& experiment, const Measurement& measurement) {
+  Recipe recipe = experiment.recipe;
+  for (std::size_t i = 0; i < recipe.parameters.size(); ++i) recipe.parameters[i].start = truth.values[i];
   const Layout layout(recipe, measurement.channels.names);
   const Problem problem(measurement.samples, recipe);
   std::vector<double> u = layout.FromShapes(Shapes(truth));
-  // Those that are not of the shape, in the order of Layout::linear.
-  std::vector<std::size_t> others;
-  const std::vector<Parameter> parameters = Parameters(truth.model);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].group != ParameterGroup::kShape) others.push_back(i);
-  }
-  for (std::size_t c = 0; c < layout.channels(); ++c) {
-    for (std::size_t k = 0; k < layout.linear(c).size(); ++k) {
-      const int index = layout.linear(c)[k].index;
-      if (index >= 0) u[static_cast<std::size_t>(index)] = truth.values[others[k]][c];
-    }
+  if (recipe.instrument.alignment) {
+    u[layout.first_angle()] = experiment.noise.misalignment_x;
+    u[layout.first_angle() + 1] = experiment.noise.misalignment_y;
   }
   ThreadPool alone(1);
   return problem.Sum(layout.ToKernel(u.data()), false, &alone).sum_rho / 2;
@@ -102,7 +96,10 @@ Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measure
     trial.misfit = material.misfit && material.misfit->flagged;
     trial.samples = measurement.samples.size();
     trial.incidences = GroupByIncidence(measurement).wi.size();
-    trial.cost_at_truth = same ? CostAt(truth, experiment.recipe, measurement) : kNan;
+    // A fit that chose another metric, or estimated the noise that its own needs, minimised another cost.
+    const bool comparable = same && material.metric == NameOf(MetricChoices(), experiment.recipe.metric) &&
+                            RowOf(experiment.recipe.metric).curve != Curve::kAsinh;
+    trial.cost_at_truth = comparable ? CostAt(truth, experiment, measurement) : kNan;
     trial.slope_difference = same ? SlopeDifference(truth, values) : kNan;
   } catch (const InputError& error) {
     trial.error = error.what();
@@ -120,14 +117,23 @@ Trial RunTrial(const Experiment& experiment, std::size_t index) {
   return CompareWithTruth(experiment, truth, MeasurementOf(experiment, truth, StreamSeed(seed, kNoise)));
 }
 
+void RunTrials(const Experiment& experiment, const std::vector<std::size_t>& indices, int threads,
+               const std::function<void(std::size_t index, Trial trial)>& done, const std::atomic<bool>& stop) {
+  ParallelFor(indices.size(), threads, [&](std::size_t k) {
+    if (!stop) done(indices[k], RunTrial(experiment, indices[k]));
+  });
+}
+
 std::vector<Trial> RunTrials(const Experiment& experiment, std::size_t count, int threads,
                              const std::function<void()>& advance, const std::atomic<bool>& stop) {
   std::vector<Trial> trials(count);
-  ParallelFor(count, threads, [&](std::size_t index) {
-    if (stop) return;
-    trials[index] = RunTrial(experiment, index);
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const auto done = [&](std::size_t index, Trial trial) {
+    trials[index] = std::move(trial);
     if (advance) advance();
-  });
+  };
+  RunTrials(experiment, all, threads, done, stop);
   return trials;
 }
 

@@ -65,6 +65,16 @@ TEST_F(BatchOnSlurm, ALostNodeLosesNothingAndTheTableIsTheSame) {
       << Shell("diff laptop/results.csv cluster/results.csv | head").out;
   // What died with the node was begun again.
   EXPECT_THAT(ReadWholeFile(folder_ / "cluster/runs.csv"), HasSubstr(",died,"));
+
+  // Trials of a validation on the same nodes; times of fits differ.
+  const std::string validate =
+      "lobefit validate $SOURCE/samples/brushed_metal.toml --theta-i 10,50 --phi-i 0,90 --detector-step 20 --noise 0.05 "
+      "--trials 30 ";
+  ASSERT_EQ(On(validate + "--out trials --engine slurm --shards 3 --submit").exit_code, 0);
+  ASSERT_TRUE(WaitFor("test -s \"$(ls trials/slurm/collect_*.txt)\" && test -z \"$(squeue -h)\"", 120))
+      << On("squeue; sinfo; cat trials/slurm/*").out;
+  const std::string table_of = " | grep -A20 '^wrong minimum'";
+  EXPECT_EQ(Shell("cat trials/slurm/collect_*.txt" + table_of).out, Shell(validate + table_of).out);
 }
 
 }  // namespace

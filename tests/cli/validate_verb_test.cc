@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "tests/support/run_program.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -109,7 +111,53 @@ TEST_F(ValidateVerb, AnInterruptedRunReportsTheTrialsThatItHas) {
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_LT(json["trials"]["done"], 100000);
   EXPECT_EQ(json["trials"]["planned"], 100000);
-  EXPECT_THAT(result.err, testing::HasSubstr("interrupted after"));
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_THAT(result.err, testing::HasSubstr("interrupted: "));
+}
+
+// Apart from the time that fits took, the same bytes.
+TEST_F(ValidateVerb, PartsInAFolderAreTheWhole) {
+  const std::string few = std::string(kFew) + "--noise multiplicative=0.05,drift=0.02 --trials 12 --json ";
+  const auto document = [](const ProgramResult& result) {
+    nlohmann::json json = nlohmann::json::parse(result.out);
+    json.erase("command");
+    json.erase("seconds_a_fit");
+    return json;
+  };
+  const nlohmann::json whole = document(Shell(few));
+  EXPECT_EQ(Shell(few + "--out parts --shard 2/3").exit_code, 0);
+  const ProgramResult some = Shell(few + "--out parts --collect");
+  EXPECT_EQ(some.exit_code, 5);
+  EXPECT_EQ(document(some)["trials"]["done"], 4);
+  EXPECT_THAT(some.err, testing::HasSubstr("4 of 12 trials are done"));
+  // What a death cut short is done again.
+  Shell("for f in parts/segments/*; do head -c -40 $f > cut; cat cut > $f; done");
+  EXPECT_EQ(document(Shell(few + "--out parts --collect"))["trials"]["done"], 3);
+  EXPECT_EQ(Shell(few + "--out parts --shard 1/2").exit_code, 0);
+  EXPECT_EQ(document(Shell(few + "--out parts")), whole);
+  EXPECT_EQ(document(Shell(few + "--out parts --collect")), whole);
+  const ProgramResult other = Shell(few + "--out parts --seed 2");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, testing::HasSubstr("holds trials of another validation"));
+  for (const char* bad : {"--collect", "--shard 1/2", "--shard 3/2 --out parts", "--submit --out parts",
+                          "--sweep alpha=0.2 --out parts", "--engine slurm --shards 13 --out parts"})
+    EXPECT_EQ(Shell(few + bad).exit_code, 2) << bad;
+}
+
+TEST_F(ValidateVerb, ShowsWhatTheInstrumentGains) {
+  const std::string through =
+      std::string(kFew) + "--recipe ellipsoid --noise multiplicative=0.02,aperture=5 --trials 12 --json ";
+  const ProgramResult result = Shell(through + "--detector 5 --without-instrument");
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  const auto bias_of = [](const nlohmann::json& parameters) {
+    const nlohmann::json& alpha = parameters["alpha_y"];
+    return std::fabs(alpha["bias"].get<double>()) / alpha["mean_stderr"].get<double>();
+  };
+  EXPECT_LT(bias_of(json["parameters"]), 1.2);
+  EXPECT_GT(bias_of(json["without_instrument"]["parameters"]), 5);
+  const ProgramResult nothing = Shell(through + "--without-instrument");
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_THAT(nothing.err, testing::HasSubstr("give --source, --detector"));
 }
 
 }  // namespace

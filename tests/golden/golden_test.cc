@@ -65,6 +65,25 @@ struct Case {
   Measurement measurement;
 };
 
+// A material as a fit through an instrument leaves it.
+Material SeenThroughAnInstrument() {
+  Material material = test::MakeMaterial(1, false);
+  InstrumentUsed instrument;
+  instrument.detector = DegreesToRadians(4);
+  instrument.mean = "flux";
+  instrument.drift = {0.03, true};
+  for (const double degrees : {10., 30., 50., 70.})
+    instrument.gains.push_back({DegreesToRadians(degrees), 0, 1 + 0.05 * std::sin(degrees), 0.01});
+  const double tenth = DegreesToRadians(0.1);
+  instrument.alignment = {{"e_x", tenth, tenth, 2 * tenth, 0.5}, {"e_y", -tenth, 2 * tenth, 2 * tenth, 0.9}};
+  instrument.alignment_correlation = 0.6;
+  instrument.azimuths = {0};
+  instrument.told_from_tilt = false;
+  instrument.offset = {{0.0012, 0.0003}};
+  material.instrument = instrument;
+  return material;
+}
+
 std::vector<Case> Cases() {
   std::vector<Case> cases;
   const auto add = [&cases](const std::string& name, std::size_t channels, bool isotropic, const test::Pairs& pairs,
@@ -75,6 +94,8 @@ std::vector<Case> Cases() {
   add("table_rgb", 3, true, test::TablePairs(), true);
   add("goniometer_rgb", 3, false, test::GoniometerPairs(true), false);
   add("in_plane_mono", 1, false, test::GoniometerPairs(false), false);
+  const Material seen = SeenThroughAnInstrument();
+  cases.push_back({"instrument", seen, test::Measure(seen, test::GoniometerPairs(false), 0.05, false)});
   return cases;
 }
 
@@ -93,6 +114,7 @@ TEST(Golden, Panels) {
       // What every measurement shows alike is stored once.
       if (c.name != "table_rgb" && (panel->id == "quality" || panel->id == "energy" || panel->id == "correlation"))
         continue;
+      if (c.name == "instrument" && panel->id != "instrument" && panel->id != "curves") continue;
       // Wide panels are pictures more than text: half the size keeps the repository small.
       const Canvas canvas = DrawPanelAlone(*panel, panel->wide ? 820 : 420, panel->wide ? 0.5 : 1, fonts);
       const std::filesystem::path path = folder / (c.name + "_" + panel->id + ".png");

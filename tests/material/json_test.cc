@@ -110,5 +110,36 @@ TEST(MaterialJson, RefusesWhatIsNotAMaterial) {
   }
 }
 
+TEST(MaterialJson, ReadsTheInstrumentBackAndChecksIt) {
+  Material material = FittedMaterial();
+  InstrumentUsed instrument;
+  instrument.source = 0.01;
+  instrument.mean = "flux";
+  instrument.drift = {0.02, true};
+  instrument.gains = {{0.5, 0.1, 1.02, 0.01}};
+  instrument.alignment = {
+      {"e_x", 0.002, 0.001, 0.003, 0.9}, {"e_y", 0.001, 0.001, 0.003, 0.1}, {"e_z[2]", 0, 0.1, 1, 0}};
+  instrument.alignment_correlation = 0.25;
+  instrument.azimuths = {0, kPi};
+  material.instrument = instrument;
+  const std::string good = ToJson(material);
+  const Material read = MaterialFromJson(good, "m.json");
+  EXPECT_EQ(ToJson(read), good);
+  EXPECT_NEAR(read.instrument->azimuths.at(1), kPi, 1e-12);
+  using Pointer = nlohmann::json::json_pointer;
+  const std::pair<const char*, nlohmann::json> bad[] = {{"/instrument/source_deg", -1},
+                                                        {"/instrument/detector_deg", 40},
+                                                        {"/instrument/mean", "median"},
+                                                        {"/instrument/gains/0/gain", 0},
+                                                        {"/instrument/alignment/0/value_deg", 12},
+                                                        {"/instrument/sample_azimuths_deg", {0}},
+                                                        {"/instrument/offset", {{{"value", 0.1}, {"stderr", 0}}}}};
+  for (const auto& [where, value] : bad) {
+    nlohmann::json json = nlohmann::json::parse(good);
+    json[Pointer(where)] = value;
+    EXPECT_THROW(MaterialFromJson(json.dump(), "m.json"), InputError) << where;
+  }
+}
+
 }  // namespace
 }  // namespace lobefit

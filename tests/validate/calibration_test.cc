@@ -87,7 +87,7 @@ TEST(Calibration, CountsWhatWentWrong) {
   EXPECT_THAT(c.failures, testing::Contains(testing::HasSubstr("more than 6 standard errors")));
   EXPECT_THAT(c.failures, testing::Contains(testing::HasSubstr("wrong minimum")));
   EXPECT_THAT(ToText(c), testing::HasSubstr("39 of 40 trials"));
-  const nlohmann::json json = nlohmann::json::parse(ToJson(experiment, c, "command"));
+  const nlohmann::json json = nlohmann::json::parse(ToJson(experiment, c, nullptr, "command"));
   EXPECT_EQ(json["passed"], false);
   EXPECT_EQ(json["trials"]["wrong_minima_without_sign"], 1);
   EXPECT_EQ(json["parameters"]["alpha_x"]["not_determined"], 1);

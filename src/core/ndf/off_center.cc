@@ -231,4 +231,11 @@ OffCenter OffCenterFromSlopeCoordinates(const SlopeCoordinates& coordinates, dou
   return {v[0], v[1], a * a, a * b, b * b + c * c};
 }
 
+double NarrowestWidth(const SlopeCoordinates& coordinates) {
+  const OffCenter o = OffCenterFromSlopeCoordinates(coordinates);
+  const double mean = 0.5 * (o.q11 + o.q22), off = std::hypot(0.5 * (o.q11 - o.q22), o.q12);
+  // The smaller eigenvalue as det over the larger one: no cancellation.
+  return std::exp(coordinates.v[2] + coordinates.v[4]) / std::sqrt(mean + off);
+}
+
 }  // namespace lobefit

@@ -39,6 +39,9 @@ Ellipsoid EllipsoidFromSlopeCoordinates(const SlopeCoordinates& coordinates, dou
 SlopeCoordinates SlopeCoordinatesFromOffCenter(const OffCenter& off_center, double jacobian[25] = nullptr);
 OffCenter OffCenterFromSlopeCoordinates(const SlopeCoordinates& coordinates, double jacobian[25] = nullptr);
 
+// Width across the narrowest axis in slope space: the square root of the smaller eigenvalue of Q^-1.
+double NarrowestWidth(const SlopeCoordinates& coordinates);
+
 // Definition by M = A^T A, for any scalar; p as in EllipsoidRotation, out = slope_x, slope_y, q11, q12, q22.
 template <class T>
 void OffCenterFormula(const T* p, T* out) {

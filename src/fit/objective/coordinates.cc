@@ -9,9 +9,6 @@
 namespace lobefit {
 namespace {
 
-// The cosine of the difference angle for which the rules of means are made: 60 degrees.
-constexpr double kMeanCosine = 0.5;
-
 constexpr const char* kSlopeNames[] = {"slope_x", "slope_y", "ln a", "b", "ln c"};
 // Slopes of 10 are normals 84 degrees from the surface's; widths from 1e-4 (a mirror) to 10 (nearly uniform over the
 // hemisphere).

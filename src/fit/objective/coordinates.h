@@ -17,6 +17,9 @@
 
 namespace lobefit {
 
+// The cosine of the difference angle for which the rules of means (LobeMeanRule) are made: 60 degrees.
+inline constexpr double kMeanCosine = 0.5;
+
 struct Coordinate {
   std::string name;  // for messages: "ln alpha_x", "f0[R]"
   double low, high;  // bounds of the solver

@@ -6,6 +6,7 @@
 #include "lobefit/core/brdf/brdf.h"
 #include "lobefit/core/sel/sel_table.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/objective/reading.h"
 #include "lobefit/fit/objective/sigma_weights.h"
 
 namespace lobefit {
@@ -106,6 +107,8 @@ std::vector<std::vector<double>> Predict(const Material& material, const Samples
     PredictLobes(SelReflectance(*material.sel), samples, pool, &f_r);
     return f_r;
   }
+  const std::optional<Reading> reading =
+      material.instrument ? std::make_optional<Reading>(material, std::nullopt) : std::nullopt;
   const Reflectance reflectance(material.model, material.Values(), channels);
   pool->Run(runs, [&](std::size_t run) {
     const std::size_t begin = RunBegin(samples.size(), run), end = RunBegin(samples.size(), run + 1);
@@ -117,7 +120,12 @@ std::vector<std::vector<double>> Predict(const Material& material, const Samples
                                         samples.wo_z.data() + begin,
                                         end - begin};
     std::vector<std::vector<double>> piece;
-    reflectance.Evaluate(directions, &piece);
+    if (reading) {
+      reading->Evaluate(directions, samples.sample_azimuth.empty() ? nullptr : samples.sample_azimuth.data() + begin,
+                        &piece);
+    } else {
+      reflectance.Evaluate(directions, &piece);
+    }
     for (std::size_t c = 0; c < channels; ++c)
       std::copy(piece[c].begin(), piece[c].end(), f_r[c].begin() + static_cast<std::ptrdiff_t>(begin));
   });

@@ -77,7 +77,7 @@ std::shared_ptr<AngleImage> Make(const ReportData& data) {
       if (wi.z <= 0.02 || wo.z <= 0.02) continue;
       ++possible;
       const std::size_t pixel = slices->image->At(column, row);
-      data.fitted.Evaluate(wi, wo, f_r.data());
+      data.Read(wi, wo, f_r.data());
       slices->image->fitted[pixel] = static_cast<float>(data.Display(f_r));
       std::array<std::uint32_t, 4> indices;
       std::array<float, 4> weights;

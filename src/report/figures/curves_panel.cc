@@ -42,22 +42,28 @@ struct Curves {
 // Fitted values along a slice, every quarter of a degree.
 struct FittedCurve {
   std::vector<double> degrees, theta_h;
-  std::vector<std::vector<double>> f_r;  // [channel]
+  std::vector<std::vector<double>> f_r;      // [channel], as the instrument reads it
+  std::vector<std::vector<double>> surface;  // [channel], without the instrument; empty: there is none
 };
 
 FittedCurve EvaluateCurve(const Curves& curves, const Slice& slice) {
   FittedCurve curve;
-  const std::size_t channels = curves.data.channels();
-  curve.f_r.resize(channels);
-  std::vector<double> f_r(channels);
+  std::array<std::vector<double>, 6> d;
   for (int k = -359; k <= 359; ++k) {
     Vec3 wi, wo;
     SliceDirections(curves.slices, slice, DegreesToRadians(k * 0.25), &wi, &wo);
-    curves.data.fitted.Evaluate(wi, wo, f_r.data());
     curve.degrees.push_back(k * 0.25);
     curve.theta_h.push_back(PolarAngle(HalfVector(wi, wo)));
-    for (std::size_t c = 0; c < channels; ++c) curve.f_r[c].push_back(f_r[c]);
+    const double all[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
+    for (std::size_t j = 0; j < 6; ++j) d[j].push_back(all[j]);
   }
+  const DirectionArrays directions = {d[0].data(), d[1].data(), d[2].data(),         d[3].data(),
+                                      d[4].data(), d[5].data(), curve.degrees.size()};
+  const std::vector<double>& turns = curves.data.measurement.samples.sample_azimuth;
+  const std::vector<double> turn(turns.empty() ? 0 : directions.count,
+                                 turns.empty() ? 0 : turns[slice.points.front().sample]);
+  curves.data.Read(directions, turn.empty() ? nullptr : turn.data(), &curve.f_r);
+  if (curves.data.reading) curves.data.fitted.Evaluate(directions, &curve.surface);
   return curve;
 }
 
@@ -161,6 +167,10 @@ void DrawSlice(const Curves& curves, const Slice& slice, Canvas* canvas, const B
     }
     for (const std::size_t c : data.shown_channels) {
       std::vector<Point> line;
+      for (std::size_t k = 0; k < curve.degrees.size() && !curve.surface.empty(); ++k)
+        line.push_back(axes.Map(curve.degrees[k], std::max(curve.surface[c][k], curves.values.low * 1e-2)));
+      if (!line.empty()) canvas->Polyline(line, {CurveColor(data, c), 1, 0.7, 4, 3});
+      line.clear();
       for (std::size_t k = 0; k < curve.degrees.size(); ++k) {
         const double f = curve.f_r[c][k];
         line.push_back(axes.Map(curve.degrees[k], std::max(f, curves.values.low * 1e-2)));
@@ -251,7 +261,8 @@ std::optional<Panel> CurvesPanel(const ReportData& data) {
       panel.legend.push_back({LegendEntry::Mark::kSwatch, data.channel_colors[c], data.channel_names[c]});
   }
   panel.legend.push_back({LegendEntry::Mark::kDot, neutral, "measured"});
-  panel.legend.push_back({LegendEntry::Mark::kLine, data.channels() == 1 ? style::kInk : neutral, "fitted"});
+  panel.legend.push_back({LegendEntry::Mark::kLine, data.channels() == 1 ? style::kInk : neutral,
+                          data.reading ? "fitted, as read; dashed: surface" : "fitted"});
   panel.legend.push_back({LegendEntry::Mark::kBand, neutral, "5–95 % of residuals"});
   panel.height = [curves](Canvas*, double) {
     return static_cast<double>(curves->rows) * (curves->rows == 1 ? 400.0 : 290.0) + kBottom + 54;

@@ -102,7 +102,7 @@ Map MakeMap(const ReportData& data, const std::vector<std::uint32_t>& members, c
       if (w.z <= 0) continue;
       ++inside;
       const std::size_t pixel = map.image->At(column, row);
-      data.fitted.Evaluate(outgoing ? w : map.stays, outgoing ? map.stays : w, f_r.data());
+      data.Read(outgoing ? w : map.stays, outgoing ? map.stays : w, f_r.data());
       map.image->fitted[pixel] = static_cast<float>(data.Display(f_r));
       std::array<std::uint32_t, 4> indices;
       std::array<float, 4> weights;

@@ -8,8 +8,8 @@ namespace lobefit {
 
 const std::vector<PanelMaker>& PanelMakers() {
   static const std::vector<PanelMaker> makers = {
-      CurvesPanel, LobesPanel,   ParametersPanel, QualityPanel, SpherePanel,    EnergyPanel,     MapsPanel,
-      NdfPanel,    ProfilePanel, FresnelPanel,    BurleyPanel,  ResidualsPanel, CorrelationPanel};
+      CurvesPanel, LobesPanel,   ParametersPanel, QualityPanel,    SpherePanel, EnergyPanel,    MapsPanel,
+      NdfPanel,    ProfilePanel, FresnelPanel,    InstrumentPanel, BurleyPanel, ResidualsPanel, CorrelationPanel};
   return makers;
 }
 

@@ -46,6 +46,7 @@ std::optional<Panel> ProfilePanel(const ReportData& data);
 std::optional<Panel> FresnelPanel(const ReportData& data);
 std::optional<Panel> ResidualsPanel(const ReportData& data);
 std::optional<Panel> EnergyPanel(const ReportData& data);
+std::optional<Panel> InstrumentPanel(const ReportData& data);
 std::optional<Panel> CorrelationPanel(const ReportData& data);
 
 // In the order of the page.

@@ -49,6 +49,7 @@ ReportData::ReportData(const Material& fitted_material, const Measurement& measu
       fitted(fitted_material),
       staying(GroupByStayingDirection(measured)),
       threads(thread_count) {
+  if (material.instrument && !material.sel) reading.emplace(material, measurement.listed_side);
   const Samples& samples = measurement.samples;
   fitted_values.assign(channels(), std::vector<float>(samples.size()));
   ParallelFor((samples.size() + kPiece - 1) / kPiece, threads, [&](std::size_t piece) {
@@ -61,7 +62,7 @@ ReportData::ReportData(const Material& fitted_material, const Measurement& measu
                                         &samples.wo_z[begin],
                                         count};
     std::vector<std::vector<double>> f_r;
-    fitted.Evaluate(directions, &f_r);
+    Read(directions, samples.sample_azimuth.empty() ? nullptr : &samples.sample_azimuth[begin], &f_r);
     for (std::size_t c = 0; c < channels(); ++c) {
       for (std::size_t i = 0; i < count; ++i) fitted_values[c][begin + i] = static_cast<float>(f_r[c][i]);
     }
@@ -85,6 +86,27 @@ ReportData::ReportData(const Material& fitted_material, const Measurement& measu
   } else {
     shown_channels = {0, (channels() - 1) / 2, channels() - 1};
   }
+}
+
+void ReportData::Read(const DirectionArrays& directions, const double* sample_azimuth,
+                      std::vector<std::vector<double>>* values) const {
+  if (reading) {
+    reading->Evaluate(directions, sample_azimuth, values);
+  } else {
+    fitted.Evaluate(directions, values);
+  }
+}
+
+void ReportData::Read(const Vec3& wi, const Vec3& wo, double* values) const {
+  if (!reading) {
+    fitted.Evaluate(wi, wo, values);
+    return;
+  }
+  std::fill_n(values, channels(), 0.0);
+  if (!(wi.z > 0 && wo.z > 0)) return;
+  std::vector<std::vector<double>> all;
+  reading->Evaluate({&wi.x, &wi.y, &wi.z, &wo.x, &wo.y, &wo.z, 1}, nullptr, &all);
+  for (std::size_t c = 0; c < channels(); ++c) values[c] = all[c][0];
 }
 
 double ReportData::Display(const std::vector<double>& f_r) const {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "lobefit/fit/objective/reading.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/plot/canvas.h"
@@ -20,10 +22,11 @@ struct ReportData {
 
   const Material& material;
   const Measurement& measurement;
-  FittedFunction fitted;
+  FittedFunction fitted;           // the surface
+  std::optional<Reading> reading;  // where the fit knows an instrument, what that reads of the surface
   Staying staying;
   int threads;
-  // fitted_values[channel][sample], f_r in 1/sr.
+  // fitted_values[channel][sample], f_r in 1/sr: readings, where there is an instrument.
   std::vector<std::vector<float>> fitted_values;
   // One a channel: colour and name for people ("R", "550 nm").
   std::vector<Rgb> channel_colors;
@@ -33,6 +36,11 @@ struct ReportData {
   std::vector<double> display_weights;  // one a channel, sum 1
 
   std::size_t channels() const { return fitted.channels(); }
+  // What stands beside measured values: readings, or f_r of the surface where there is no instrument. Directions above
+  // the horizon; values[c][i].
+  void Read(const DirectionArrays& directions, const double* sample_azimuth,
+            std::vector<std::vector<double>>* values) const;
+  void Read(const Vec3& wi, const Vec3& wo, double* values) const;
   // One number for pictures: luminance of R, G, B, the Y of X, Y, Z, else the mean of the channels.
   double Display(const std::vector<double>& f_r) const;
   double Display(const std::vector<std::vector<double>>& values, std::size_t sample) const;

@@ -35,13 +35,13 @@ struct Diagram {
   }
 };
 
-struct Residuals {
+struct ResidualDiagrams {
   std::array<Diagram, 3> diagrams;
   double ratio = 2;
   std::size_t taken = 0, all = 0;
 };
 
-void Fill(const ReportData& data, Residuals* residuals) {
+void Fill(const ReportData& data, ResidualDiagrams* residuals) {
   const Samples& samples = data.measurement.samples;
   const std::size_t count = samples.size() * data.channels(), step = 1 + count / kTaken;
   residuals->all = count;
@@ -140,7 +140,7 @@ void DrawDiagram(const Diagram& diagram, double ratio, Canvas* canvas, const Box
 }  // namespace
 
 std::optional<Panel> ResidualsPanel(const ReportData& data) {
-  const auto residuals = std::make_shared<Residuals>();
+  const auto residuals = std::make_shared<ResidualDiagrams>();
   Fill(data, residuals.get());
   if (residuals->taken < 2 * kFewest) return std::nullopt;
   Panel panel;

@@ -79,6 +79,16 @@ Json TableJson(const ReportData& data, const ChannelColor& to_color) {
   return {{"size", kTable}, {"low", Rounded(bottom, 6)}, {"high", Rounded(top, 6)}, {"data", Base64(bytes)}};
 }
 
+// The page evaluates the surface: measured values stand beside it without what the instrument makes of it, surface over
+// reading at the fit.
+double SurfaceOverReading(const ReportData& data, std::size_t channel, std::size_t sample) {
+  if (!data.reading) return 1;
+  std::vector<double> surface(data.channels());
+  data.fitted.Evaluate(data.measurement.samples.wi(sample), data.measurement.samples.wo(sample), surface.data());
+  const double ratio = surface[channel] / static_cast<double>(data.fitted_values[channel][sample]);
+  return std::isfinite(ratio) ? ratio : 1;
+}
+
 Json SlicesJson(const ReportData& data) {
   const Slices slices = GatherSlices(data.measurement, data.staying);
   std::size_t total = 0;
@@ -97,13 +107,16 @@ Json SlicesJson(const ReportData& data) {
         return List(points, [&](const SlicePoint& p) { return Rounded(value(c, p.sample), 4); });
       });
     };
-    list.push_back(
-        {{"theta", Hundredths(slice.theta)},
-         {"phi", Hundredths(slice.phi)},
-         {"x", List(points, [](const SlicePoint& p) { return Hundredths(p.theta); })},
-         {"y", values([&](std::size_t c, std::size_t i) { return data.measurement.samples.values[c][i]; })},
-         // What the fit says at the same places, for browsers that cannot evaluate it.
-         {"f", values([&](std::size_t c, std::size_t i) { return static_cast<double>(data.fitted_values[c][i]); })}});
+    list.push_back({{"theta", Hundredths(slice.theta)},
+                    {"phi", Hundredths(slice.phi)},
+                    {"x", List(points, [](const SlicePoint& p) { return Hundredths(p.theta); })},
+                    {"y", values([&](std::size_t c, std::size_t i) {
+                       return data.measurement.samples.values[c][i] * SurfaceOverReading(data, c, i);
+                     })},
+                    // What the fit says at the same places, for browsers that cannot evaluate it.
+                    {"f", values([&](std::size_t c, std::size_t i) {
+                       return static_cast<double>(data.fitted_values[c][i]) * SurfaceOverReading(data, c, i);
+                     })}});
   }
   return {{"outgoing", slices.outgoing_stays}, {"list", list}};
 }

@@ -134,7 +134,7 @@ std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels,
                        {"parameters", ParameterTable(data)},
                        {"wide-figures", wide},
                        {"narrow-figures", narrow}},
-                      {{"live", live}, {"still", !live}});
+                      {{"live", live}, {"still", !live}, {"instrument", data.reading.has_value()}});
 }
 
 }  // namespace lobefit
