@@ -67,6 +67,10 @@ Recipe LoadRecipe(const std::string& name_or_path) {
 void RecipeOverrides::AddTo(CLI::App* app, const std::string& group) {
   app->add_option("--metric", metric_, "overrides the recipe: " + Join(Names(MetricChoices())))->group(group);
   app->add_option("--weighting", weighting_, "overrides the recipe: " + Join(Names(WeightingChoices())))->group(group);
+  app->add_option("--energy", energy_,
+                  "overrides the recipe: free (default), or conserving: the albedo stays at most 1 at the measured "
+                  "incident directions")
+      ->group(group);
   app->add_option("--theta-max", theta_max_deg_,
                   "overrides the recipe: limit on both polar angles, degrees (default 80)")
       ->check(Within(0.1, 90))
@@ -84,6 +88,15 @@ void RecipeOverrides::Apply(Recipe* recipe) const {
   recipe->metric_given = recipe->metric_given || !metric_.empty();
   Override(weighting_, "--weighting", WeightingChoices(), &recipe->weighting);
   if (theta_max_deg_ > 0) recipe->theta_max = DegreesToRadians(theta_max_deg_);
+  Override(energy_, "--energy", EnergyChoices(), &recipe->energy);
+  if (recipe->energy == EnergyChoice::kConserving) {
+    if (recipe->sel) throw UsageError("--energy conserving is for models; a recipe with [sel] fits a table of lobes");
+    if (scale_ == "free") {
+      throw UsageError(
+          "--scale free says that the values are not calibrated, so no albedo follows from them and energy "
+          "'conserving' has no meaning; leave one of the two out");
+    }
+  }
   if (scale_ == "free") *recipe = WithFreeScale(*recipe);
 }
 

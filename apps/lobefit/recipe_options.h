@@ -24,7 +24,7 @@ class RecipeOverrides {
   bool HasFreeScale() const { return scale_ == "free"; }
 
  private:
-  std::string metric_, weighting_, scale_;
+  std::string metric_, weighting_, energy_, scale_;
   double theta_max_deg_ = 0;
 };
 

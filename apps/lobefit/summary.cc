@@ -109,6 +109,11 @@ std::string Summary(const Material& material) {
     if (std::isfinite(verdict.noise)) text += fmt::format(", noise of the data {}", PercentText(verdict.noise));
     text += verdict.advice.empty() ? "\n" : "; " + verdict.advice + '\n';
   }
+  if (material.energy) {
+    if (!material.energy->absolute) text += "The scale of the values is free: no albedo follows from the fit\n";
+    if (const std::string above = EnergyText(*material.energy); !above.empty())
+      text += "More light leaves than arrives: " + above + '\n';
+  }
   text += "Root mean square error:";
   for (const MetricError& error : material.errors) {
     // A metric may weigh no sample at all: those that weigh by sin(theta_i) at normal incidence.

@@ -26,7 +26,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // An albedo above this is more than the error of its quadrature.
-constexpr double kCreatesEnergy = 1.01;
+constexpr double kWorthARemark = 1.01;
 
 // What a target is given: the fit, its error meter, and what was taken out of or changed in it.
 struct Subject {
@@ -188,7 +188,7 @@ ExportResult ExportSelTo(const Target& target, const Material& material, const E
 
 std::vector<std::string> EnergyRemarks(const ErrorMeter& meter) {
   const ErrorMeter::LargestAlbedo& largest = meter.largest_albedo();
-  if (largest.albedo <= kCreatesEnergy) return {};
+  if (largest.albedo <= kWorthARemark) return {};
   return {
       fmt::format("the material reflects more than it receives: an albedo of {:.3f} in {}, seen at {:.0f} degrees from "
                   "the normal; renderers gain light from it",

@@ -12,6 +12,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
+#include "lobefit/fit/inference/energy_balance.h"
 #include "lobefit/fit/inference/misfit.h"
 #include "lobefit/fit/inference/noise_bias.h"
 #include "lobefit/fit/inference/rivals.h"
@@ -19,6 +20,7 @@
 #include "lobefit/fit/inference/verdict.h"
 #include "lobefit/fit/instrument.h"
 #include "lobefit/fit/instrument_report.h"
+#include "lobefit/fit/keep_energy.h"
 #include "lobefit/fit/last_descent.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/prediction.h"
@@ -221,6 +223,7 @@ struct Found {
       throw InputError(measurement.source +
                        ": no start of the fit has a finite cost; look at the values with `lobefit info`");
     }
+    energy = KeepEnergy(recipe, layout, incidences, measurement.channels.names, &problem, &minima, pool);
     uncertainty = EstimateUncertainty(problem, layout, best().u, incidences, pool);
   }
   const Solution& best() const { return minima[0].solution; }
@@ -229,6 +232,7 @@ struct Found {
   Problem problem;
   std::vector<DistinctMinimum> minima;
   LastDescent last;
+  std::unique_ptr<EnergyRule> energy;
   Uncertainty uncertainty;
 };
 
@@ -387,6 +391,13 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         100 * std::max(0.0, explained)));
   }
   material.verdict = JudgeFit(problem, layout, best.u, samples, incidences, explained, material.misfit->flagged, &pool);
+  material.energy = EnergyBalance{};
+  material.energy->absolute = !recipe.free_scale;
+  if (!recipe.free_scale) {
+    material.energy = BalanceAt(SpreadIncidences(incidences, recipe.theta_max), recipe.model, material.Values(),
+                                material.channels, &pool);
+    JudgeEnergy(*material.energy, &*material.verdict);
+  }
   material.termination = {best.converged,
                           DeterminedButForCurves(uncertainty, layout) && !has_rival && !(explained < kLeastExplained),
                           best.message, best.iterations};

@@ -11,6 +11,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/fit/compare.h"
+#include "lobefit/fit/inference/energy_balance.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/prediction.h"
 #include "lobefit/fit/objective/problem.h"
@@ -27,6 +28,8 @@ constexpr std::size_t kSamples = 4000, kMostFolds = 4, kStarts = 4;
 // Wavelengths that a spectrum is judged by; the shape is that of all, and descents cost the square of their number.
 constexpr std::size_t kMostChannels = 5;
 constexpr std::size_t kMostLobes = 3;
+// Incident directions at which a model's albedo is looked at.
+constexpr std::size_t kIncidences = 6;
 
 struct Split {
   Samples training, test;
@@ -38,6 +41,7 @@ struct Rung {
   std::vector<double> mean_square;      // of each fold's test
   std::vector<ParameterValues> shapes;  // [lobe] its ellipse on the subsample
   bool above_one = false;               // the first lobe's reflectance is at its bound
+  bool creates_energy = false;          // CreatesEnergy
   double mean() const {
     return std::accumulate(mean_square.begin(), mean_square.end(), 0.0) / static_cast<double>(mean_square.size());
   }
@@ -80,6 +84,7 @@ class Ladder {
     options_.subsample = kSamples / 4;
     options_.scouting_steps = kScoutingSteps;
     const Incidences incidences = GroupByIncidence(measurement);
+    wi_ = SpreadIncidences(incidences, simplest.theta_max, kIncidences);
     const std::size_t folds = std::min(kMostFolds, incidences.wi.size());
     if (folds < 2) return;
     const std::vector<std::size_t> dealt = DealFolds(incidences.wi.size(), folds, options.seed);
@@ -134,7 +139,7 @@ class Ladder {
 
   LadderChoice Choose() {
     const Rung& best = Best();
-    std::size_t chosen = 0, first = rungs_.size();
+    std::size_t chosen = rungs_.size();
     for (std::size_t r = 0; r < rungs_.size(); ++r) {
       Rung& rung = rungs_[r];
       rung.tried.held_out = std::sqrt(rung.mean());
@@ -149,9 +154,9 @@ class Ladder {
       const bool good =
           excess <= std::max(error, kWorthNothing * best.mean()) && rung.mean() <= rungs_[0].mean() * (1 + 1e-9);
       if (!good) continue;
-      const bool simpler = first == rungs_.size() || rung.tried.free_parameters < rungs_[chosen].tried.free_parameters;
-      if (simpler) chosen = r;
-      first = std::min(first, r);
+      // What can be a surface before what cannot, then the fewest parameters.
+      const auto rank = [](const Rung& of) { return std::pair(of.creates_energy, of.tried.free_parameters); };
+      if (chosen == rungs_.size() || rank(rung) < rank(rungs_[chosen])) chosen = r;
     }
     LadderChoice choice;
     rungs_[chosen].tried.chosen = true;
@@ -201,6 +206,8 @@ class Ladder {
         rung.shapes.emplace_back(first, first + static_cast<std::ptrdiff_t>(kEllipseParameters));
       }
       rung.mean_square.assign(folds_.size(), kNan);
+      if (!recipe.free_scale)
+        rung.creates_energy = CreatesEnergy(BalanceAt(wi_, recipe.model, values, channels_, &pool_));
       pool_.Run(folds_.size(), [&](std::size_t k) {
         ThreadPool alone(1);
         const Problem training(folds_[k].training, recipe), test(folds_[k].test, recipe);
@@ -226,6 +233,7 @@ class Ladder {
   Metric wanted_;
   FitOptions options_;
   std::vector<std::string> channels_;
+  std::vector<Vec3> wi_;  // where albedos are looked at
   ThreadPool pool_;
   bool scaled_;
   Samples all_;
@@ -315,6 +323,7 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
 void AddAdvice(Material* material) {
   if (!material->verdict) return;
   Verdict& verdict = *material->verdict;
+  if (material->energy && CreatesEnergy(*material->energy)) return;  // what to do about that is said
   if (verdict.kind != VerdictKind::kRough && verdict.kind != VerdictKind::kDoesNotDescribe) return;
   const TriedModel *best = nullptr, *chosen = nullptr;
   for (const TriedModel& model : material->tried) {

@@ -1,5 +1,7 @@
 #include "lobefit/material/badge.h"
 
+#include <fmt/format.h>
+
 namespace lobefit {
 
 Badge BadgeOf(const Material& material) {
@@ -9,7 +11,8 @@ Badge BadgeOf(const Material& material) {
     return {BadgeMark::kGood, "converged"};
   }
   const Verdict& verdict = *material.verdict;
-  const std::string error = ", typical error " + PercentText(verdict.typical_error);
+  std::string error = ", typical error " + PercentText(verdict.typical_error);
+  if (material.energy && !material.energy->absolute) error += ", scale free";
   if (verdict.kind == VerdictKind::kDoesNotDescribe) return {BadgeMark::kBad, "does not describe the data" + error};
   if (!material.termination.determined) return {BadgeMark::kRough, "not fully determined" + error};
   switch (verdict.kind) {
@@ -17,8 +20,13 @@ Badge BadgeOf(const Material& material) {
       return {BadgeMark::kGood, "within the noise" + error};
     case VerdictKind::kClose:
       return {BadgeMark::kGood, "close" + error};
-    default:
-      return {BadgeMark::kRough, "rough" + error};
+    default: {
+      // What is above 1 by less is no reason for the word.
+      const bool creates = material.energy && CreatesEnergy(*material.energy);
+      return {BadgeMark::kRough,
+              creates ? fmt::format("reflects more than it receives, albedo {:.3g}{}", material.energy->albedo, error)
+                      : "rough" + error};
+    }
   }
 }
 

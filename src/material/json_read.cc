@@ -288,6 +288,20 @@ void ReadRest(const Reader& reader, Material* material) {
                          reader.GetNumbers(quality, "noise", 0.01)[0], reader.GetNumbers(quality, "explained", 1)[0],
                          reader.Get<std::string>(quality, "advice")};
   }
+  if (quality.contains("energy")) {
+    const Json& energy = reader.Member(quality, "energy");
+    material->energy = EnergyBalance{};
+    material->energy->absolute = reader.Get<bool>(energy, "absolute");
+    if (material->energy->absolute) {
+      *material->energy = {true,
+                           reader.GetNumbers(energy, "largest_albedo", 1)[0],
+                           DegreesToRadians(reader.Get<double>(energy, "theta_i_deg")),
+                           DegreesToRadians(reader.Get<double>(energy, "phi_i_deg")),
+                           reader.Get<std::string>(energy, "channel"),
+                           reader.Get<std::size_t>(energy, "above_one"),
+                           reader.Get<std::size_t>(energy, "incidences")};
+    }
+  }
   if (quality.contains("tried")) {
     for (const Json& entry : reader.Member(quality, "tried")) {
       material->tried.push_back({reader.Get<std::string>(entry, "model"),

@@ -102,6 +102,18 @@ Json QualityToJson(const Material& material) {
     quality["explained"] = Number(verdict.explained);
     quality["advice"] = verdict.advice;
   }
+  if (material.energy) {
+    const EnergyBalance& energy = *material.energy;
+    quality["energy"] = {{"absolute", energy.absolute}};
+    if (energy.absolute) {
+      quality["energy"]["largest_albedo"] = Number(energy.albedo);
+      quality["energy"]["theta_i_deg"] = RadiansToDegrees(energy.theta_i);
+      quality["energy"]["phi_i_deg"] = RadiansToDegrees(energy.phi_i);
+      quality["energy"]["channel"] = energy.channel;
+      quality["energy"]["above_one"] = energy.above_one;
+      quality["energy"]["incidences"] = energy.incidences;
+    }
+  }
   if (!material.tried.empty()) {
     Json tried = Json::array();
     for (const TriedModel& model : material.tried) {

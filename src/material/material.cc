@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "lobefit/math/vec.h"
+
 namespace lobefit {
 
 ParameterValues Material::Values() const {
@@ -18,6 +20,13 @@ const std::vector<Choice<VerdictKind>>& VerdictChoices() {
       {VerdictKind::kDoesNotDescribe, "does-not-describe", "the model does not describe the data"},
   };
   return choices;
+}
+
+std::string EnergyText(const EnergyBalance& balance) {
+  if (!balance.absolute || balance.albedo <= 1.005) return "";
+  std::string text = fmt::format("an albedo of {:.3g} at theta_i {:.4g}, phi_i {:.4g} degrees in {}", balance.albedo,
+                                 RadiansToDegrees(balance.theta_i), RadiansToDegrees(balance.phi_i), balance.channel);
+  return text + fmt::format(", above 1 at {} of {} incident directions", balance.above_one, balance.incidences);
 }
 
 std::string PercentText(double share) {

@@ -71,6 +71,21 @@ const std::vector<Choice<VerdictKind>>& VerdictChoices();
 // 0.078 as "7.8 %"; "over 1000 %" beyond.
 std::string PercentText(double share);
 
+// The largest directional albedo of the model at the measured incident directions.
+struct EnergyBalance {
+  bool absolute = true;  // else the scale of the values is not known (--scale free), and nothing below is set
+  double albedo = 0;
+  double theta_i = 0, phi_i = 0;  // of the incident direction, radians
+  std::string channel;
+  std::size_t above_one = 0, incidences = 0;  // directions where it is above 1, of those looked at
+};
+// Values of goniometers are calibrated to some per cent: an albedo above this one is no error of calibration.
+inline constexpr double kCreatesEnergy = 1.05;
+inline bool CreatesEnergy(const EnergyBalance& balance) { return balance.absolute && balance.albedo > kCreatesEnergy; }
+// "an albedo of 8.2 at theta_i 60, phi_i 0 degrees in value, above 1 at 11 of 12 incident directions"; empty where none
+// is above 1.005.
+std::string EnergyText(const EnergyBalance& balance);
+
 // A model of the automatic choice, judged on incident directions that it had not seen.
 struct TriedModel {
   std::string name;
@@ -135,6 +150,7 @@ struct Material {
   std::optional<Misfit> misfit;              // of fits of a model
   std::vector<TriedModel> tried;             // where the model was chosen automatically
   std::optional<Verdict> verdict;            // of fits of a model
+  std::optional<EnergyBalance> energy;       // of fits of a model
   std::optional<InstrumentUsed> instrument;  // of fits through one
 
   std::size_t samples_used = 0, samples_read = 0;

@@ -35,6 +35,7 @@ Recipe WithFreeScale(const Recipe& recipe) {
     if (IsReflectance(after[i])) free.parameters[i].fixed.clear();
   }
   LiftReflectanceBounds(&free);
+  free.free_scale = true;
   free.name = recipe.name + "-free-scale";
   return free;
 }

@@ -16,6 +16,14 @@ const std::vector<Choice<Weighting>>& WeightingChoices() {
   return choices;
 }
 
+const std::vector<Choice<EnergyChoice>>& EnergyChoices() {
+  static const std::vector<Choice<EnergyChoice>> choices = {
+      {EnergyChoice::kFree, "free", "a lobe's reflectance is at most 1, the sum of all may be more"},
+      {EnergyChoice::kConserving, "conserving", "the albedo is at most 1 at the measured incident directions"},
+  };
+  return choices;
+}
+
 const std::vector<Choice<ApertureMean>>& ApertureMeanChoices() {
   static const std::vector<Choice<ApertureMean>> choices = {
       {ApertureMean::kFlux, "flux", "mean of f_r cos_theta_i cos_theta_o over the means of the cosines"},

@@ -20,7 +20,11 @@ namespace lobefit {
 // kAuto: solid angles where the format knows its cells, else cells.
 enum class Weighting { kCells, kSolidAngle, kAuto };
 
+// kConserving: the directional albedo stays at most 1 at the measured incident directions (keep_energy.h).
+enum class EnergyChoice { kFree, kConserving };
+
 const std::vector<Choice<Weighting>>& WeightingChoices();
+const std::vector<Choice<EnergyChoice>>& EnergyChoices();
 const std::vector<Choice<ApertureMean>>& ApertureMeanChoices();
 
 // What a recipe says of one parameter; inside units. Bounds default to the range in the parameter table.
@@ -86,6 +90,8 @@ struct Recipe {
   bool metric_given = false;
   NoiseModel noise;  // of the readings, for Metric::kAsinh; {0, 0}: the fit estimates it
   Weighting weighting = Weighting::kAuto;
+  EnergyChoice energy = EnergyChoice::kFree;
+  bool free_scale = false;  // the scale of the values is not known: no albedo follows from them (free_scale.h)
   Loss loss = Loss::kNone;
   double loss_scale = 0.1;
   double theta_max = 80 * 3.14159265358979323846 / 180;  // radians

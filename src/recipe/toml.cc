@@ -273,8 +273,8 @@ Recipe ReadSelRecipe(const toml::table& root, const TomlFile& place) {
 // The part of a recipe that names a model.
 Recipe ReadModelRecipe(const toml::table& root, const TomlFile& place) {
   place.CheckKeys(root,
-                  {"name", "metric", "weighting", "loss", "theta_max_deg", "wavelengths_nm", "diffuse", "instrument",
-                   "lobe", "parameters", "sel"},
+                  {"name", "metric", "weighting", "energy", "loss", "theta_max_deg", "wavelengths_nm", "diffuse",
+                   "instrument", "lobe", "parameters", "sel"},
                   "of a recipe");
   Model model;
   if (const toml::node* lobes = root.get("lobe")) {
@@ -303,6 +303,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
   ReadChoice(root, "metric", MetricChoices(), place, &recipe.metric);
   recipe.metric_given = root.contains("metric");
   ReadChoice(root, "weighting", WeightingChoices(), place, &recipe.weighting);
+  ReadChoice(root, "energy", EnergyChoices(), place, &recipe.energy);
   ReadLoss(root, place, &recipe);
   ReadInstrument(root, place, &recipe);
   if (const std::optional<double> limit = Number(root, "theta_max_deg", place)) {
@@ -345,6 +346,8 @@ std::string ToToml(const Recipe& recipe) {
   // Where it was not given, the fit may choose another.
   if (recipe.metric_given || recipe.metric != Recipe().metric)
     text += fmt::format("metric = \"{}\"\n", NameOf(MetricChoices(), recipe.metric));
+  if (recipe.energy != EnergyChoice::kFree)
+    text += fmt::format("energy = \"{}\"\n", NameOf(EnergyChoices(), recipe.energy));
   if (recipe.loss != Loss::kNone) {
     text += fmt::format("loss = {{ kind = \"{}\", scale = {} }}\n", NameOf(LossChoices(), recipe.loss),
                         FormatDouble(recipe.loss_scale));

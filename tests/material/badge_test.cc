@@ -34,6 +34,23 @@ TEST(Badge, WhatFailedComesFirst) {
   }
 }
 
+TEST(Badge, SaysWhereTheFitCannotBeASurfaceAndWhereItsScaleIsFree) {
+  Material material = With(VerdictKind::kRough, true, true);
+  material.energy = EnergyBalance{true, 8.22, 0.5, 0, "Y", 3, 4};
+  EXPECT_EQ(BadgeOf(material).mark, BadgeMark::kRough);
+  EXPECT_EQ(BadgeOf(material).words, "reflects more than it receives, albedo 8.22, typical error 7.2 %");
+  EXPECT_EQ(EnergyText(*material.energy),
+            "an albedo of 8.22 at theta_i 28.65, phi_i 0 degrees in Y, above 1 at 3 of 4 incident directions");
+  material.energy->albedo = 0.9;
+  EXPECT_EQ(BadgeOf(material).words, "rough, typical error 7.2 %");
+  EXPECT_EQ(EnergyText(*material.energy), "");
+  material = With(VerdictKind::kClose, true, true);
+  material.energy = EnergyBalance{};
+  material.energy->absolute = false;
+  EXPECT_EQ(BadgeOf(material).mark, BadgeMark::kGood);
+  EXPECT_EQ(BadgeOf(material).words, "close, typical error 7.2 %, scale free");
+}
+
 // Documents of version 0.1 have no verdict.
 TEST(Badge, WithoutAVerdictOnlyTheSolverSpeaks) {
   Material material = With(VerdictKind::kClose, true, true);

@@ -45,6 +45,12 @@ class DirectionalDiffuse {
   DirectionalDiffuse(Diffuse kind, const double* parameters);
   // f_r, 1/sr; gradient by the parameters, null skips it.
   double Evaluate(const Vec3& wi, const Vec3& wo, double* gradient) const;
+  // Of kInterfaced, in SIMD: f_r for an apparent albedo of 1, and the derivative of its logarithm by the index.
+  void EvaluateInterfaced(const double* cos_i, const double* cos_o, std::size_t count, double* unit,
+                          double* by_ior) const;
+  // Whether `other` is the same but for its albedo.
+  bool HasInterfaceOf(const DirectionalDiffuse& other) const { return first_ == other.first_; }
+  double albedo() const { return albedo_; }
 
  private:
   Diffuse kind_;

@@ -83,7 +83,7 @@ ProfileSpline::ProfileSpline(std::vector<double> knots) : knots_(std::move(knots
   for (const std::vector<Cubic>& pieces : integral) weight.push_back(pieces[one - 1].At(u[one] - u[one - 1]));
   const auto e = static_cast<std::size_t>(std::max_element(weight.begin(), weight.end() - 1) - weight.begin());
   for (const Real x : u) u_.push_back(static_cast<double>(x));
-  coefficients_.assign((K + 1) * 4 * K, 0.0);
+  coefficients_.assign((K + 1) * 4 * K + 7, 0.0);
   for (std::size_t j = 0, k = 0; j <= K; ++j) {
     if (j == e) continue;
     const Real ratio = weight[j] / weight[e];
@@ -107,6 +107,7 @@ ProfileSpline ProfileSpline::PowerLaw() {
     spline.u_.push_back(static_cast<double>(x));
     for (const Real c : {-x, Real{-1}, Real{0}, Real{0}}) spline.coefficients_.push_back(static_cast<double>(c));
   }
+  spline.coefficients_.resize(spline.coefficients_.size() + 7, 0.0);
   spline.first_radius_ = {0};
   return spline;
 }

@@ -41,6 +41,7 @@ class ProfileSpline {
   // is the tail, straight lines.
   std::size_t Interval(double u) const;
   double Left(std::size_t interval) const { return u_[interval]; }
+  // Seven numbers more can be read behind each.
   const double* Coefficients(std::size_t interval) const { return coefficients_.data() + interval * 4 * size_; }
   std::size_t intervals() const { return u_.size(); }
 

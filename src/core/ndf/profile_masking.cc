@@ -215,7 +215,7 @@ ProfileGrid::ProfileGrid(std::shared_ptr<const ProfileSpline> spline) : spline_(
   const QuadratureRule rule = GaussLegendre(kTablePoints);
   rules_.reserve(a_.size());
   for (const double a : a_) rules_.emplace_back(*spline_, a, rule);
-  stride_ = (spline_->size() + 2) / 2 * 2;
+  stride_ = (spline_->size() + 4) / 4 * 4;
   zero_ = Table(Profile(spline_, std::vector<double>(spline_->size(), 0.0)));
 }
 
@@ -233,40 +233,25 @@ ProfileMasking::ProfileMasking(std::shared_ptr<const ProfileGrid> grid, Profile 
   table_ = zero ? grid_->zero_ : grid_->Table(profile_);
 }
 
-void ProfileMasking::Difference(double a, double* derivative, double* difference) const {
-  const std::vector<double>& nodes = grid_->a_;
-  const std::size_t stride = stride_;
-  if (!(a < nodes.back())) {
-    std::vector<double> moments(3 * stride, 0.0);
-    if (std::isfinite(a)) {
-      const ProfileTail tail(profile_.tail_exponent());
-      ProfileRule(profile_.spline(), a, {}).Apply(profile_, tail, true, moments.data(), stride);
+void ProfileMasking::Differences(const double* a, std::size_t count, double* slope, double* difference) const {
+  const double last = grid_->a_.back();
+  const ProfileTable table = {&grid_->breaks_, grid_->a_.data(), table_.data(), stride_};
+  for (std::size_t i = 0; i < count;) {
+    std::size_t end = i;
+    while (end < count && a[end] < last) ++end;
+    if (end > i)
+      InterpolateProfile(table, a + i, end - i, slope == nullptr ? nullptr : slope + i, difference + i * stride_);
+    for (i = end; i < count && !(a[i] < last); ++i) {
+      double* to = difference + i * stride_;
+      std::vector<double> moments(3 * stride_, 0.0);
+      if (std::isfinite(a[i])) {
+        const ProfileTail tail(profile_.tail_exponent());
+        ProfileRule(profile_.spline(), a[i], {}).Apply(profile_, tail, true, moments.data(), stride_);
+      }
+      if (slope != nullptr) slope[i] = -moments[stride_];
+      std::copy_n(moments.data(), stride_, to);
     }
-    if (derivative != nullptr) *derivative = -moments[stride];
-    std::copy_n(moments.data(), stride, difference);
-    return;
   }
-  const double position = std::log(a + std::sqrt(1.0 + a * a));  // asinh; its last bits do not matter
-  const std::vector<ProfileGrid::Break>& breaks = grid_->breaks_;
-  std::size_t b = 0;
-  while (b + 1 < breaks.size() && position >= breaks[b + 1].from) ++b;
-  const double steps = std::max(0.0, (position - breaks[b].from) * breaks[b].per_step);
-  const std::size_t k0 = breaks[b].first + std::min(static_cast<std::size_t>(steps), breaks[b].steps - 1);
-  const double h = nodes[k0 + 1] - nodes[k0], x = (a - nodes[k0]) / h, y = 1.0 - x;
-  // Quintic Hermite weights of value, -slope and curvature at both ends.
-  const double xx = x * x, yy = y * y, x3 = xx * x, y3 = yy * y;
-  const double* p0 = table_.data() + k0 * 3 * stride;
-  const double *p1 = p0 + stride, *p2 = p1 + stride, *p3 = p2 + stride, *p4 = p3 + stride, *p5 = p4 + stride;
-  if (derivative != nullptr) {
-    const double in_m = 30.0 * xx * yy / h;
-    *derivative = in_m * (*p3 - *p0) - yy * (1.0 + 2.0 * x - 15.0 * xx) * *p1 - xx * (1.0 + 2.0 * y - 15.0 * yy) * *p4 +
-                  0.5 * h * x * y * (y * (2.0 - 5.0 * x) * *p2 - x * (2.0 - 5.0 * y) * *p5);
-  }
-  const double w0 = y3 * (1.0 + 3.0 * x + 6.0 * xx), w1 = -h * x * y3 * (1.0 + 3.0 * x), w2 = 0.5 * h * h * xx * y3;
-  const double w3 = x3 * (1.0 + 3.0 * y + 6.0 * yy), w4 = h * y * x3 * (1.0 + 3.0 * y), w5 = 0.5 * h * h * yy * x3;
-  // Across the columns, which lie side by side: the compiler makes vectors of them.
-  for (std::size_t k = 0; k < stride; ++k)
-    difference[k] = w0 * p0[k] + w1 * p1[k] + w2 * p2[k] + w3 * p3[k] + w4 * p4[k] + w5 * p5[k];
 }
 
 }  // namespace lobefit

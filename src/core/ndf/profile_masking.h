@@ -15,6 +15,7 @@
 
 #include "lobefit/core/ndf/profile.h"
 #include "lobefit/core/ndf/profile_moments.h"
+#include "lobefit/core/ndf/profile_table.h"
 #include "lobefit/math/quadrature.h"
 
 namespace lobefit {
@@ -67,12 +68,7 @@ class ProfileGrid {
   std::vector<double> Table(const Profile& profile) const;
 
   std::shared_ptr<const ProfileSpline> spline_;
-  // Nodes are evenly spaced in asinh(a) from one break to the next.
-  struct Break {
-    double from, per_step;  // asinh(a); steps a unit of it
-    std::size_t first, steps;
-  };
-  std::vector<Break> breaks_;
+  std::vector<ProfileBreak> breaks_;
   std::vector<double> a_;     // of the nodes
   std::size_t stride_;        // numbers of a row of a table
   std::vector<double> zero_;  // the table of coefficients 0, where fits begin
@@ -88,9 +84,9 @@ class ProfileMasking {
 
   const Profile& profile() const { return profile_; }
 
-  // difference[0]: M(a) less GGX's; then its derivatives by q, padded to stride() numbers. `derivative`: in a, null
-  // skips it. Any a >= 0, infinity included.
-  void Difference(double a, double* derivative, double* difference) const;
+  // difference[i * stride()]: M(a[i]) less GGX's; then its derivatives by q, padded to stride() numbers. slope[i]: its
+  // derivative in a; without it those by q are not set either. Any a >= 0, infinity included; quick below 10^6.
+  void Differences(const double* a, std::size_t count, double* slope, double* difference) const;
   std::size_t stride() const { return stride_; }
 
  private:

@@ -37,7 +37,7 @@ double ShapeInvariantDistribution::Sigma(const Vec3& u, double* gradient) const 
   const double root = std::sqrt(p.q), a = std::abs(p.a);
   std::vector<double> difference(masking_->stride());
   double slope;
-  masking_->Difference(a, &slope, difference.data());
+  masking_->Differences(&a, 1, &slope, difference.data());
   if (gradient != nullptr) {
     const double in_c = p.a > 0 ? slope : -slope, in_q = 0.5 * (difference[0] - a * slope) / root;
     for (int k = 0; k < kSlopeParameters; ++k) gradient[k] += in_c * dc[k] + in_q * dq[k];

@@ -103,7 +103,7 @@ MaskingRatio MaskingRatioOf(const Lobe& lobe, const LobeShape& shape) {
   std::vector<double> row(masking.stride());
   const auto ratio = [&](double w) {
     const double a = std::sinh(w) / scale;
-    masking.Difference(a, nullptr, row.data());
+    masking.Differences(&a, 1, nullptr, row.data());
     const double ggx = 0.5 / (a + std::sqrt(1 + a * a));
     return 2 * std::exp(w) * scale * std::max(0.0, ggx + row[0]);
   };

@@ -31,6 +31,38 @@ void SchlickArrays(const double* cos_d, std::size_t n, double* p5, double* one_m
   }
 }
 
+// The operations of FresnelCurveBasis, in the interval of each lane: its knots from the third before to the third behind.
+void CurveBasisArrays(const double* cos_d, std::size_t n, std::size_t stride, double* to) {
+  constexpr double kKnots[] = {0, 0, 0, 0, 0.25, 0.6, 1, 1, 1, 1};
+  const D64 d;
+  const V64 zero = hn::Zero(d);
+  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
+    const V64 c = Load(cos_d + i);
+    const auto second = hn::Ge(c, Constant(kKnots[4])), third = hn::Ge(c, Constant(kKnots[5]));
+    V64 knots[6];
+    for (std::size_t k = 0; k < 6; ++k) {
+      knots[k] = hn::IfThenElse(second, Constant(kKnots[k + 2]), Constant(kKnots[k + 1]));
+      knots[k] = hn::IfThenElse(third, Constant(kKnots[k + 3]), knots[k]);
+    }
+    V64 N[4] = {Constant(1), zero, zero, zero};
+    for (std::size_t p = 1; p < 4; ++p) {
+      V64 saved = zero;
+      for (std::size_t j = 0; j < p; ++j) {
+        const V64 left = knots[3 - p + j], right = knots[3 + j];
+        const V64 part = hn::Div(N[j], hn::Sub(right, left));
+        N[j] = hn::Add(saved, hn::Mul(hn::Sub(right, c), part));
+        saved = hn::Mul(hn::Sub(c, left), part);
+      }
+      N[p] = saved;
+    }
+    for (std::size_t k = 0; k < 6; ++k) {
+      const V64 in_first = k < 4 ? N[k] : zero, in_second = k > 0 && k < 5 ? N[k - 1] : zero,
+                in_third = k > 1 ? N[k - 2] : zero;
+      hn::StoreU(hn::IfThenElse(third, in_third, hn::IfThenElse(second, in_second, in_first)), d, to + k * stride + i);
+    }
+  }
+}
+
 // to[k] = sum_j jacobian[j][k] from[j], j < rows, k < columns, arrays of n with the given strides.
 void ContractArrays(const double* from, const double* jacobian, std::size_t rows, std::size_t columns, std::size_t n,
                     std::size_t stride, double* to) {
@@ -154,6 +186,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace lobefit {
 HWY_EXPORT(SchlickArrays);
+HWY_EXPORT(CurveBasisArrays);
 HWY_EXPORT(ContractArrays);
 HWY_EXPORT(AddFactorArrays);
 HWY_EXPORT(AddScaledArrays);
@@ -170,6 +203,9 @@ namespace arrays {
 
 void Schlick(const double* cos_d, std::size_t n, double* p5, double* one_minus_p5) {
   HWY_DYNAMIC_DISPATCH(SchlickArrays)(cos_d, n, p5, one_minus_p5);
+}
+void CurveBasis(const double* cos_d, std::size_t n, std::size_t stride, double* to) {
+  HWY_DYNAMIC_DISPATCH(CurveBasisArrays)(cos_d, n, stride, to);
 }
 void Contract(const double* from, const double* jacobian, std::size_t rows, std::size_t columns, std::size_t n,
               std::size_t stride, double* to) {

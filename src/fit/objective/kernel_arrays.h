@@ -10,6 +10,9 @@ namespace lobefit::arrays {
 // lanes).
 void Schlick(const double* cos_d, std::size_t n, double* p5, double* one_minus_p5);
 
+// The Fresnel curve's basis (fresnel.h): to[k] of kFresnelCurveSize arrays `stride` apart.
+void CurveBasis(const double* cos_d, std::size_t n, std::size_t stride, double* to);
+
 // to[k] = sum_j jacobian[j][k] from[j], j < rows, k < columns, arrays of n with the given strides.
 void Contract(const double* from, const double* jacobian, std::size_t rows, std::size_t columns, std::size_t n,
               std::size_t stride, double* to);

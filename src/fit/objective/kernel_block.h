@@ -61,6 +61,8 @@ class Block {
         {&ones_, 1},
         {&factor_, linear ? 0 : channels * lobes},
         {&factor_gradient_, linear ? 0 : channels * fresnel_size_},
+        {&curve_basis_, linear ? 0 : lobes * kMaxFresnelParameters},
+        {&interfaced_, directional ? 2 : 0},
         {&factor_by_argument_, linear || !means_ ? 0 : channels * lobes},
         {&f_, channels},
         {&residual_, channels},
@@ -325,6 +327,7 @@ class Block {
     std::fill(specular + count_, specular + padded_, 0.0);
     std::fill(argument + count_, argument + padded_, 1.0);
     if (IsLinear(lobe)) FinishArgument(l);
+    if (IsCurve(lobe)) arrays::CurveBasis(argument, padded_, kBlock, curve_basis(l));
     if (gradient_) ContractGradients(l, gradients, contracted(l));
   }
 
@@ -353,6 +356,7 @@ class Block {
 
   void EvaluateDiffuse(std::size_t c, const DirectionArrays& d) {
     double* value = diffuse_.data() + c * kBlock;
+    if (model_.diffuse_kind == Diffuse::kInterfaced) return EvaluateInterfaced(c, d, value);
     for (std::size_t i = 0; i < count_; ++i) {
       double gradient[2];
       value[i] = directional_[c].Evaluate({d.wi_x[i], d.wi_y[i], d.wi_z[i]}, {d.wo_x[i], d.wo_y[i], d.wo_z[i]},
@@ -362,6 +366,21 @@ class Block {
     std::fill(value + count_, value + padded_, 0.0);
     for (std::size_t k = 0; gradient_ && k < 2; ++k)
       std::fill(diffuse_gradient(c, k) + count_, diffuse_gradient(c, k) + padded_, 0.0);
+  }
+
+  // Channels of one interface differ by their albedo.
+  void EvaluateInterfaced(std::size_t c, const DirectionArrays& d, double* value) {
+    double *unit = interfaced_.data(), *by_ior = unit + kBlock;
+    if (c == 0 || !directional_[c].HasInterfaceOf(directional_[c - 1])) {
+      directional_[c].EvaluateInterfaced(d.wi_z, d.wo_z, count_, unit, by_ior);
+      std::fill(unit + count_, unit + padded_, 0.0);
+      std::fill(by_ior + count_, by_ior + padded_, 0.0);
+    }
+    std::fill_n(value, padded_, 0.0);
+    arrays::AddScaled(unit, directional_[c].albedo(), padded_, value);
+    if (!gradient_) return;
+    arrays::Multiply(value, by_ior, padded_, diffuse_gradient(c, 0));
+    std::copy_n(unit, padded_, diffuse_gradient(c, 1));
   }
 
   // Gradients by slope coordinates to the solver's coordinates of lobe l. They were written with a stride of `count_`:
@@ -386,6 +405,10 @@ class Block {
     if (IsLinear(lobe)) return LinearFactor(l, c);
     const std::size_t size = FresnelParameters(lobe.kind.fresnel);
     double* value = factor_.data() + (c * model_.lobes.size() + l) * kBlock;
+    if (IsCurve(lobe)) {
+      arrays::Contract(curve_basis(l), lobe.fresnel.data() + c * size, size, 1, padded_, kBlock, value);
+      return {0, 1, value};
+    }
     for (std::size_t i = 0; i < padded_; ++i) {
       double dF[kMaxFresnelParameters];
       double* by_argument = gradient_ && lobe.mean != nullptr
@@ -400,6 +423,9 @@ class Block {
   static bool IsLinear(const KernelLobe& lobe) {
     return lobe.kind.fresnel == Fresnel::kSchlick || lobe.kind.fresnel == Fresnel::kNone;
   }
+  // At a point: of a mean the argument moves with the shape.
+  static bool IsCurve(const KernelLobe& lobe) { return lobe.kind.fresnel == Fresnel::kCurve && lobe.mean == nullptr; }
+  double* curve_basis(std::size_t l) { return curve_basis_.data() + l * kMaxFresnelParameters * kBlock; }
   Factor LinearFactor(std::size_t l, std::size_t c) const {
     const KernelLobe& lobe = model_.lobes[l];
     if (lobe.kind.fresnel == Fresnel::kNone) return {lobe.fresnel[c], 0, ones_.data()};
@@ -413,6 +439,7 @@ class Block {
   const double* FactorGradient(std::size_t l, std::size_t k, std::size_t c) {
     if (model_.lobes[l].kind.fresnel == Fresnel::kNone) return ones_.data();
     if (model_.lobes[l].kind.fresnel == Fresnel::kSchlick) return one_minus_p5_.data() + l * kBlock;
+    if (IsCurve(model_.lobes[l])) return curve_basis(l) + k * kBlock;
     return factor_gradient(c, first_fresnel_[l] + k);
   }
   double* factor_gradient(std::size_t c, std::size_t k) {
@@ -468,7 +495,7 @@ class Block {
   bool means_ = false;  // some lobe is averaged over the instrument's discs
   // cos_d_: of each lobe's pair; of a mean its Fresnel argument.
   std::span<double> specular_, gradients_, contracted_, cos_d_, p5_, one_minus_p5_, ones_, factor_, factor_gradient_,
-      diffuse_, diffuse_gradient_;
+      curve_basis_, interfaced_, diffuse_, diffuse_gradient_;
   std::span<double> argument_gradients_, argument_contracted_, factor_by_argument_;
   std::span<double> f_, residual_, slope_, columns_, sqrt_weight_, gain_, gain_column_, inverse_cos_i_, reading_slope_;
   // Of the alignment: directions in the sample's frame, derivatives of f_r by its angles [angle][channel], and the model

@@ -12,6 +12,7 @@
 
 namespace lobefit {
 
+class EnergyRule;
 class Gains;
 
 // Sets the samples aside that the recipe's metric cannot take: beyond the angle limit; values that the transform has no
@@ -44,6 +45,9 @@ class Problem {
   // Readings are multiplied by `gains` from now on, which must outlive this; their prior is part of the cost.
   void AttachGains(Gains* gains);
   Gains* gains() const { return gains_; }
+  // Its penalty is part of the cost of Solve and Linearise from now on; it must outlive this.
+  void AttachEnergy(const EnergyRule* rule) { energy_ = rule; }
+  const EnergyRule* energy() const { return energy_; }
   GainSums SumGains(const KernelModel& model, ThreadPool* pool) const;
 
   // Sums over all samples. The samples are cut into a fixed number of runs whose sums are added in order, so that the
@@ -58,6 +62,7 @@ class Problem {
   KernelSamples kernel_;
   SigmaWeights sigma_;
   Gains* gains_ = nullptr;
+  const EnergyRule* energy_ = nullptr;
   std::vector<std::uint16_t> turn_;  // of each sample, where an alignment is fitted over several
   std::vector<double> weight_;       // the samples' own times those of their uncertainties; empty where there are none
 };

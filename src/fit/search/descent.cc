@@ -64,7 +64,9 @@ bool IsHeld(const BoundedObjective& objective, const Eigen::VectorXd& u, const E
 double GainOf(const BoundedObjective& objective, const Eigen::VectorXd& u, double cost, const Eigen::MatrixXd& gram,
               const Eigen::VectorXd& gradient, Eigen::Index k) {
   if (IsHeld(objective, u, gradient, k) || !(gram(k, k) > 0) || cost <= Rounding(objective)) return 0;
-  return gradient(k) * (gradient(k) / gram(k, k)) / (2 * cost);
+  // No further than to its bound.
+  const double step = std::clamp(u(k) - gradient(k) / gram(k, k), objective.low(k), objective.high(k)) - u(k);
+  return -step * (gradient(k) + 0.5 * gram(k, k) * step) / cost;
 }
 
 bool IsMinimum(const BoundedObjective& objective, const Eigen::VectorXd& u, double cost, const Eigen::MatrixXd& gram,

@@ -45,7 +45,8 @@ Descent Descend(const BoundedObjective& objective, const Eigen::VectorXd& start,
 bool IsHeld(const BoundedObjective& objective, const Eigen::VectorXd& u, const Eigen::VectorXd& gradient,
             Eigen::Index k);
 
-// What moving coordinate k alone would gain to first order, g^2 / (2 H cost), relative to the cost; 0 where it is held.
+// What moving coordinate k alone within its bounds would gain by the quadratic model, g^2 / (2 H cost) where they leave
+// it room, relative to the cost; 0 where it is held.
 // In units of the coordinate's own standard error z from the minimum it is z^2 / residuals.
 double GainOf(const BoundedObjective& objective, const Eigen::VectorXd& u, double cost, const Eigen::MatrixXd& gram,
               const Eigen::VectorXd& gradient, Eigen::Index k);

@@ -82,8 +82,17 @@ void Refine(const Problem& problem, const Layout& layout, std::size_t most, doub
   for (DistinctMinimum& minimum : *minima) {
     if (refined < most && (refined == 0 || minimum.solution.cost <= limit)) {
       const int before = minimum.solution.iterations;
+      // Few steps are left, and bounds hold some coordinates: plain steps are minima within the box, where those of
+      // Ceres end at it and are tried again.
+      finish.use_ceres = false;
       minimum.solution = Solve(problem, layout, minimum.solution.u, finish, pool);
       minimum.solution.iterations += before;
+      if (!minimum.solution.converged) {
+        finish.use_ceres = true;
+        const int so_far = minimum.solution.iterations;
+        minimum.solution = Solve(problem, layout, minimum.solution.u, finish, pool);
+        minimum.solution.iterations += so_far;
+      }
       minimum.samples = problem.size();
       minimum.on_all_samples = true;
       ++refined;

@@ -1,5 +1,6 @@
 #include "lobefit/fit/search/solve.h"
 
+#include "lobefit/fit/objective/energy_rule.h"
 #include "lobefit/fit/search/descent.h"
 
 namespace lobefit {
@@ -16,7 +17,9 @@ double Linearise(const Problem& problem, const Layout& layout, const double* u, 
   const KernelSums sums = problem.Sum(layout.ToKernel(u), true, pool);
   layout.Gather(sums, hessian, gradient);
   if (problem.gains() != nullptr) EliminateGains(sums, layout, *problem.gains(), hessian, gradient, links);
-  return sums.sum_rho / 2;
+  double cost = sums.sum_rho / 2;
+  if (problem.energy() != nullptr) cost += problem.energy()->Add(layout, u, pool, hessian, gradient);
+  return cost;
 }
 
 BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, ThreadPool* pool) {
@@ -33,7 +36,9 @@ BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, Threa
                                                  Eigen::VectorXd* gradient) {
     if (problem.gains() != nullptr) problem.gains()->Profile(problem, layout.ToKernel(u.data()), pool);
     if (gram != nullptr) return Linearise(problem, layout, u.data(), pool, gram, gradient);
-    return problem.Sum(layout.ToKernel(u.data()), false, pool).sum_rho / 2;
+    const double cost = problem.Sum(layout.ToKernel(u.data()), false, pool).sum_rho / 2;
+    if (problem.energy() == nullptr) return cost;
+    return cost + problem.energy()->Add(layout, u.data(), pool, nullptr, nullptr);
   };
   return objective;
 }

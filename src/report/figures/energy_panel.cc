@@ -3,10 +3,10 @@
 #include <cmath>
 #include <memory>
 
+#include "lobefit/core/brdf/model_energy.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/axes.h"
 #include "lobefit/plot/style.h"
-#include "lobefit/report/figures/energy.h"
 #include "lobefit/report/figures/panel.h"
 
 namespace lobefit {

@@ -175,7 +175,8 @@ TEST(ProfileMasking, IsTheIntegralOverSlopes) {
       for (const double a : {-2.0, -0.6, 0.3, 0.99, 1.7, 5.0, 20.0, 45.0}) {
         const double ggx = 0.5 * (a + std::sqrt(1 + a * a));
         std::vector<double> difference(masking.stride());
-        masking.Difference(std::abs(a), nullptr, difference.data());
+        const double at = std::abs(a);
+        masking.Differences(&at, 1, nullptr, difference.data());
         EXPECT_NEAR(ggx + difference[0], DirectS(profile, a), 2e-11 * std::fmax(1, a)) << a;
       }
     }
@@ -196,7 +197,7 @@ TEST(ProfileMasking, TableIsNearTheRule) {
         double expected[21], found[8], slope;
         ProfileRule(*grid->spline(), a, rule, 4)
             .Apply(profile, ProfileTail(profile.tail_exponent()), true, expected, 7);
-        masking.Difference(a, &slope, found);
+        masking.Differences(&a, 1, &slope, found);
         EXPECT_NEAR(found[0], expected[0], 1.5e-12) << a;
         EXPECT_NEAR(slope, -expected[7], 2e-10) << a;
         for (std::size_t k = 0; k < 6; ++k)
@@ -209,7 +210,8 @@ TEST(ProfileMasking, TableIsNearTheRule) {
 TEST(ProfileMasking, IsNothingAtInfinity) {
   const ProfileMasking masking(Grid(), Profile(Grid()->spline(), Coefficients()[1]));
   double slope, found[8];
-  masking.Difference(HUGE_VAL, &slope, found);
+  const double a = HUGE_VAL;
+  masking.Differences(&a, 1, &slope, found);
   EXPECT_EQ(slope, 0);
   for (int k = 0; k < 7; ++k) EXPECT_EQ(found[k], 0);
 }

@@ -1,4 +1,4 @@
-#include "lobefit/report/figures/energy.h"
+#include "lobefit/core/brdf/model_energy.h"
 
 #include <cmath>
 

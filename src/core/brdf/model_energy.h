@@ -8,11 +8,15 @@
 
 namespace lobefit {
 
+// Points of the integral over a lobe's own slopes, where the visible facets are.
+struct FacetGrid {
+  int rings = 160, steps = 64;
+};
+
 // Directional albedo, integral of f_r cos(theta_o) over wo, a channel; wi away from the surface. The specular part is
-// integrated over the lobe's own slopes (points where the visible facets are), 160 x 64 points a lobe; a Lambertian
-// part exactly, diffuse microfacets over 24 x 48 directions.
+// integrated over each lobe's slopes; a Lambertian part exactly, diffuse microfacets over 24 x 48 directions.
 std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
-                                      const Vec3& wi);
+                                      const Vec3& wi, const FacetGrid& grid = {});
 
 // The specular lobes alone with F = 1: what a single bounce keeps. One lobe at a time.
 double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& wi);

@@ -1,4 +1,4 @@
-#include "lobefit/report/figures/energy.h"
+#include "lobefit/core/brdf/model_energy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,6 @@
 namespace lobefit {
 namespace {
 
-constexpr int kRings = 160, kSteps = 64;
 constexpr int kDiffuseRings = 24, kDiffuseSteps = 48;
 
 LobeShape ShapeOf(const Model& model, const ParameterValues& values, std::size_t lobe) {
@@ -25,36 +24,47 @@ LobeShape ShapeOf(const Model& model, const ParameterValues& values, std::size_t
 // Calls each(m, share) for facets m at the slopes of equal probability of GGX's P22 (midpoints in probability and
 // angle); the mean of share * g(m) is the integral of g over normals.
 template <class Each>
-void ForFacets(const SlopeCoordinates& shape, const Each& each) {
+void ForFacets(const SlopeCoordinates& shape, const FacetGrid& grid, const Each& each) {
   const SlopeFrame frame(shape);
-  for (int i = 0; i < kRings; ++i) {
-    const double u = (i + 0.5) / kRings, rho = std::sqrt(u / (1 - u));
-    for (int k = 0; k < kSteps; ++k) {
+  for (int i = 0; i < grid.rings; ++i) {
+    const double u = (i + 0.5) / grid.rings, rho = std::sqrt(u / (1 - u));
+    for (int k = 0; k < grid.steps; ++k) {
       // Every ring is turned against the one before, so that rings do not line up.
-      const double t = 2 * kPi * (k + 0.5 + 0.618034 * i) / kSteps;
+      const double t = 2 * kPi * (k + 0.5 + 0.618034 * i) / grid.steps;
       const double x = frame.slope_x + frame.a * rho * std::cos(t);
       const double y = frame.slope_y + frame.b * rho * std::cos(t) + frame.c * rho * std::sin(t);
       const Vec3 m = Normalized(Vec3{-x, -y, 1.0});
-      each(m, 1 / (SlopeD(frame, m) * m.z * kRings * kSteps));  // P22 dslope = D (m.n) dm
+      each(m, 1 / (SlopeD(frame, m) * m.z * grid.rings * grid.steps));  // P22 dslope = D (m.n) dm
     }
   }
 }
 
 // Adds the albedo of the lobe to `albedo`, a channel, with F of parameters[channel].
 void AddLobe(const Lobe& lobe, const LobeShape& shape, Fresnel fresnel,
-             const std::vector<std::vector<double>>& parameters, const Vec3& wi, std::vector<double>* albedo) {
+             const std::vector<std::vector<double>>& parameters, const Vec3& wi, const FacetGrid& grid,
+             std::vector<double>* albedo) {
   const Vec3 light = lobe.direction == LobeDirection::kRetro ? Mirrored(wi) : wi;
-  ForFacets(shape.slope, [&](const Vec3& m, double share) {
+  std::vector<double> in[3], out[3], weight;
+  ForFacets(shape.slope, grid, [&](const Vec3& m, double share) {
     // wo is the mirror image of wi (of a retro lobe's mirrored wi) at the facet.
     const double along = Dot(light, m);
     const Vec3 wo = Reflect(light, m);
     if (along <= 0 || wo.z <= 0) return;
-    double cos_d = 0;
-    const double specular = SpecularLobe(wi, wo, lobe, shape, &cos_d, nullptr);
-    const double weight = specular * wo.z * 4 * along * share;  // d wo = 4 (wi.m) dm
-    for (std::size_t c = 0; c < albedo->size(); ++c)
-      (*albedo)[c] += weight * FresnelFactor(fresnel, parameters[c].data(), cos_d, nullptr);
+    const double from[] = {wi.x, wi.y, wi.z}, to[] = {wo.x, wo.y, wo.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      in[k].push_back(from[k]);
+      out[k].push_back(to[k]);
+    }
+    weight.push_back(wo.z * 4 * along * share);  // d wo = 4 (wi.m) dm
   });
+  const std::size_t count = weight.size();
+  std::vector<double> specular(count), cos_d(count);
+  SpecularLobe({in[0].data(), in[1].data(), in[2].data(), out[0].data(), out[1].data(), out[2].data(), count}, lobe,
+               shape, specular.data(), cos_d.data(), nullptr);
+  for (std::size_t c = 0; c < albedo->size(); ++c) {
+    for (std::size_t i = 0; i < count; ++i)
+      (*albedo)[c] += weight[i] * specular[i] * FresnelFactor(fresnel, parameters[c].data(), cos_d[i], nullptr);
+  }
 }
 
 double DiffuseFacetsAlbedo(const DiffuseFacets& facets, const Vec3& wi) {
@@ -72,7 +82,7 @@ double DiffuseFacetsAlbedo(const DiffuseFacets& facets, const Vec3& wi) {
 }  // namespace
 
 std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
-                                      const Vec3& wi) {
+                                      const Vec3& wi, const FacetGrid& grid) {
   std::vector<double> albedo(channels, 0.0);
   if (model.diffuse != Diffuse::kNone) albedo = values.back();
   for (std::size_t c = 0; IsDirectional(model.diffuse) && c < channels; ++c) {
@@ -91,14 +101,14 @@ std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues&
       for (std::size_t k = 0; k < FresnelParameters(fresnel); ++k)
         parameters[c].push_back(values[FirstFresnel(model, lobe) + k][c]);
     }
-    AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), fresnel, parameters, wi, &albedo);
+    AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), fresnel, parameters, wi, grid, &albedo);
   }
   return albedo;
 }
 
 double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& wi) {
   std::vector<double> albedo = {0};
-  AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), Fresnel::kNone, {{1.0}}, wi, &albedo);
+  AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), Fresnel::kNone, {{1.0}}, wi, {}, &albedo);
   return albedo[0];
 }
 
@@ -110,7 +120,7 @@ double WeakFurnace(const Model& model, const ParameterValues& values, std::size_
   if (masking <= Masking::kSmithHeightDirection) return std::min(1.0, distribution->Sigma(u) / u.z);
   const Shadowing shadowing = ShadowingOf(masking, shape.slope);
   double furnace = 0;
-  ForFacets(shape.slope, [&](const Vec3& m, double share) {
+  ForFacets(shape.slope, {}, [&](const Vec3& m, double share) {
     const double along = Dot(u, m);
     if (along > 0) furnace += MaskingG1(*distribution, shadowing, u, m) * along * distribution->D(m) * share / u.z;
   });

@@ -1,0 +1,50 @@
+#include "lobefit/fit/inference/energy_balance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lobefit/math/directions.h"
+#include "lobefit/math/vec.h"
+
+namespace lobefit {
+
+std::vector<Vec3> SpreadIncidences(const Incidences& incidences, double theta_max, std::size_t most) {
+  std::vector<Vec3> within;  // by polar angle, as Incidences are
+  for (const Vec3& wi : incidences.wi) {
+    if (wi.z >= std::cos(theta_max) - 1e-9) within.push_back(wi);
+  }
+  if (within.size() <= most) return within;
+  std::vector<Vec3> spread;
+  for (std::size_t k = 0; k < most; ++k) spread.push_back(within[k * (within.size() - 1) / (most - 1)]);
+  return spread;
+}
+
+EnergyBalance BalanceAt(const std::vector<Vec3>& wi, const Model& model, const ParameterValues& values,
+                        const std::vector<std::string>& channels, ThreadPool* pool, const FacetGrid& grid) {
+  std::vector<std::vector<double>> albedo(wi.size());
+  pool->Run(wi.size(),
+            [&](std::size_t k) { albedo[k] = DirectionalAlbedo(model, values, channels.size(), wi[k], grid); });
+  EnergyBalance balance;
+  balance.incidences = wi.size();
+  for (std::size_t k = 0; k < wi.size(); ++k) {
+    const auto largest = std::max_element(albedo[k].begin(), albedo[k].end());
+    balance.above_one += *largest > 1 ? 1 : 0;
+    if (*largest <= balance.albedo) continue;
+    balance.albedo = *largest;
+    balance.theta_i = PolarAngle(wi[k]);
+    balance.phi_i = std::atan2(wi[k].y, wi[k].x);
+    balance.channel = channels[static_cast<std::size_t>(largest - albedo[k].begin())];
+  }
+  return balance;
+}
+
+void JudgeEnergy(const EnergyBalance& balance, Verdict* verdict) {
+  if (!CreatesEnergy(balance) || verdict->kind == VerdictKind::kDoesNotDescribe) return;
+  verdict->kind = VerdictKind::kRough;
+  verdict->advice =
+      "it reflects more than it receives: --energy conserving keeps it from that, and --scale free says that the "
+      "values "
+      "are not calibrated";
+}
+
+}  // namespace lobefit
