@@ -9,7 +9,7 @@ namespace {
 
 // The margin is for what the sums over points miss, and what a penalty leaves.
 constexpr double kLimit = 0.998;
-constexpr int kRounds = 6, kSteps = 40;  // a round
+constexpr int kRounds = 6, kStepsARound = 40;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ std::unique_ptr<EnergyRule> KeepEnergy(const Recipe& recipe, const Layout& layou
   double weight = 2 * solution.cost / (0.01 * 0.01);
   SolveOptions options;
   options.function_tolerance = 1e-7;
-  options.max_iterations = kSteps;
+  options.max_iterations = kStepsARound;
   options.use_ceres = false;
   bool kept = false;
   for (int round = 0; round < kRounds && !kept; ++round, weight *= 10) {
