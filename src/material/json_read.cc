@@ -354,7 +354,7 @@ Material MaterialFromJson(const std::string& text, const std::string& file_name)
   Json json;
   try {
     json = Json::parse(text);
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: is not JSON: {}", file_name, error.what()));
   }
   const Reader reader(json, file_name);

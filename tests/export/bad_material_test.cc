@@ -65,6 +65,14 @@ TEST(BadMaterial, SaysWhatIsWrong) {
   for (const Bad& bad : cases) EXPECT_THAT(MessageOf(bad.text), testing::HasSubstr(bad.message)) << bad.text;
 }
 
+TEST(BadMaterial, NumbersBeyondTheRangeAndDevices) {
+  EXPECT_THAT(MessageOf("{\"asset\": {}, \"materials\": [{\"pbrMetallicRoughness\": {\"metallicFactor\": 1e999}}]}"),
+              testing::HasSubstr("is not JSON"));
+  EXPECT_THAT(MessageOf("MakeNamedMaterial \"m\" \"string type\" \"conductor\" \"string normalmap\" \"/dev/zero\" "
+                        "\"float uroughness\" 0.2 \"rgb reflectance\" [1 1 1]\nNamedMaterial \"m\"\n"),
+              testing::HasSubstr("is no regular file"));
+}
+
 TEST(BadMaterial, NormalMapThatIsNone) {
   const std::string gltf =
       "{\"materials\": [{\"pbrMetallicRoughness\": {}, \"normalTexture\": {\"index\": 0}}], "

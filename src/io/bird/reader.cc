@@ -14,6 +14,7 @@
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/columns.h"
 #include "lobefit/io/csv/wavelengths.h"
+#include "lobefit/io/text/json_text.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/io/text/units.h"
 #include "lobefit/math/directions.h"
@@ -37,7 +38,7 @@ class BirdReader {
   BirdReader(const InputFile& file, const ReadOptions& options) : file_(file), options_(options) {}
 
   Measurement Read() {
-    const Json document = Json::parse(file_.bytes.begin(), file_.bytes.end(), nullptr, false);
+    const Json document = ParseJson<Json>(file_.bytes);
     if (document.is_discarded()) Fail("is no valid JSON; it may be cut off: fetch or export it again");
     if (!document.is_object() || !document.contains("data") || !document["data"].is_object())
       Fail("has no object 'data'");

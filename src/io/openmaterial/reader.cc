@@ -8,6 +8,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/wavelengths.h"
+#include "lobefit/io/text/json_text.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/math/directions.h"
 
@@ -21,7 +22,7 @@ bool IsOpenMaterial(std::string_view bytes) {
 Measurement ReadOpenMaterial(const InputFile& file, const ReadOptions& options) {
   using Json = nlohmann::json;
   const auto fail = [&](const std::string& what) { throw InputError(file.path.string() + ": " + what); };
-  const Json document = Json::parse(file.bytes.begin(), file.bytes.end(), nullptr, false);
+  const Json document = ParseJson<Json>(file.bytes);
   if (document.is_discarded()) fail("is no valid JSON; it may be cut off: fetch or export it again");
   if (!document.is_object() || !document.contains("brdf") || !document["brdf"].is_object() ||
       !document["brdf"].contains("lookupTable") || !document["brdf"]["lookupTable"].is_array()) {

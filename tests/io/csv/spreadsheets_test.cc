@@ -157,7 +157,11 @@ TEST(Spreadsheets, ATitleWithItsValueIsNoHeading) {
 
 TEST(Spreadsheets, StandardUncertaintyBesideAnExpandedOne) {
   const Measurement m = ReadText("theta_i,theta_o,BRDF,u_BRDF,U_BRDF\n10,20,2,0.1,0.2\n10,30,4,0.1,0.2\n");
-  EXPECT_EQ(m.samples.weight.size(), 2U);
+  ASSERT_EQ(m.samples.sigma.size(), 2U);
+  EXPECT_NEAR(m.samples.sigma[0], 0.1, 1e-12);
+  // Alone, an expanded one of unknown factor is asked about.
+  EXPECT_NE(MessageOf("theta_i,theta_o,BRDF,U_BRDF\n10,20,2,0.2\n").find("whose factor k is not said"),
+            std::string::npos);
 }
 
 TEST(Spreadsheets, JsonOfAnotherKindIsSaid) {

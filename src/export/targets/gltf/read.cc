@@ -10,6 +10,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/text/json_text.h"
 #include "lobefit/renderer/gltf_material.h"
 #include "lobefit/renderer/normal_map.h"
 
@@ -36,7 +37,7 @@ const std::map<std::string, std::vector<std::string>>& KnownMembers() {
 class GltfReader {
  public:
   explicit GltfReader(const InputFile& file) : path_(file.path) {
-    json_ = Json::parse(file.bytes.begin(), file.bytes.end(), nullptr, false);
+    json_ = ParseJson<Json>(file.bytes);
     if (!json_.is_object()) Fail("is not JSON");
     if (!json_.contains("materials") || !json_["materials"].is_array() || json_["materials"].empty()) {
       Fail("holds no materials");
@@ -168,7 +169,7 @@ class GltfReader {
 }  // namespace
 
 bool IsGltf(std::string_view bytes) {
-  const Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  const Json json = ParseJson<Json>(bytes);
   return json.is_object() && (json.contains("asset") || json.contains("materials"));
 }
 
