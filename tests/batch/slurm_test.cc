@@ -68,7 +68,8 @@ TEST_F(BatchOnSlurm, ALostNodeLosesNothingAndTheTableIsTheSame) {
 
   // Trials of a validation on the same nodes; times of fits differ.
   const std::string validate =
-      "lobefit validate $SOURCE/samples/brushed_metal.toml --theta-i 10,50 --phi-i 0,90 --detector-step 20 --noise 0.05 "
+      "lobefit validate $SOURCE/samples/brushed_metal.toml --theta-i 10,50 --phi-i 0,90 --detector-step 20 --noise "
+      "0.05 "
       "--trials 30 ";
   ASSERT_EQ(On(validate + "--out trials --engine slurm --shards 3 --submit").exit_code, 0);
   ASSERT_TRUE(WaitFor("test -s \"$(ls trials/slurm/collect_*.txt)\" && test -z \"$(squeue -h)\"", 120))

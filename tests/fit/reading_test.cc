@@ -1,6 +1,5 @@
 // What an instrument reads of a fitted surface, against quadrature over the discs that knows nothing of lobes.
 #include "lobefit/fit/objective/reading.h"
-#include "lobefit/math/directions.h"
 
 #include <cmath>
 
@@ -9,6 +8,7 @@
 
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/objective/prediction.h"
+#include "lobefit/math/directions.h"
 #include "lobefit/synthesis/instrument.h"
 
 namespace lobefit {
@@ -23,7 +23,9 @@ Material MaterialOf(const SyntheticCase& truth) {
   return material;
 }
 
-Material BrushedMaterial() { return MaterialOf(OneLobe(Ndf::kEllipsoid, 0.35, 0.11, 0, 3, 25, {0.7, 0.4}, {0.02, 0.1})); }
+Material BrushedMaterial() {
+  return MaterialOf(OneLobe(Ndf::kEllipsoid, 0.35, 0.11, 0, 3, 25, {0.7, 0.4}, {0.02, 0.1}));
+}
 
 BrdfFunction SurfaceOf(const Material& material) {
   const auto reflectance = std::make_shared<Reflectance>(material.model, material.Values(), material.channels.size());

@@ -42,9 +42,9 @@ void JudgeEnergy(const EnergyBalance& balance, Verdict* verdict) {
   if (!CreatesEnergy(balance) || verdict->kind == VerdictKind::kDoesNotDescribe) return;
   verdict->kind = VerdictKind::kRough;
   verdict->advice =
-      "it reflects more than it receives: --energy conserving keeps it from that, and --scale free says that the "
-      "values "
-      "are not calibrated";
+      "it reflects more than it receives: --energy conserving keeps it from that, and --scale free says that values "
+      "are "
+      "not calibrated";
 }
 
 }  // namespace lobefit

@@ -1,10 +1,9 @@
-#include "lobefit/core/brdf/model_energy.h"
-
 #include <cmath>
 
 #include "tests/report/synthetic.h"
 #include <gtest/gtest.h>
 
+#include "lobefit/core/brdf/model_energy.h"
 #include "lobefit/math/quadrature.h"
 
 namespace lobefit {
