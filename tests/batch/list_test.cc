@@ -48,7 +48,8 @@ TEST(Manifest, RefusesWithLineAndCure) {
       {"file,out\na,b\n", "give --out on the command line"},
       {"file,status\na,b\n", "column 'status' is one of the results' own; rename it"},
       {"file,x\na,b\nc\n", "line 3: has 1 fields, the header has 2"},
-      {"file,x\n,b\n", "line 2: names no file"}};
+      {"file,x\n,b\n", "line 2: names no file"},
+      {"file\n..\n", "line 2: '..' names a folder; a row names a file"}};
   for (const auto& [text, message] : cases)
     EXPECT_THAT([text = text] { Parse(text); }, ThrowsMessage<InputError>(HasSubstr(message))) << text;
 }

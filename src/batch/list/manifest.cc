@@ -110,6 +110,8 @@ WorkList ParseManifest(std::string_view text, const std::filesystem::path& path,
     if (task.file.empty()) throw InputError(place + ": names no file");
     task.path = (folder / task.file).lexically_normal();
     task.id = header.id != Header::kNone && !fields[header.id].empty() ? fields[header.id] : IdOf(task.file);
+    if (task.id.empty())
+      throw InputError(fmt::format("{}: '{}' names a folder; a row names a file", place, Excerpt(task.file)));
     for (const auto& [column, option] : header.options) {
       if (!fields[column].empty()) task.options[option] = WithFolder(fields[column], option, folder, names);
     }
