@@ -4,11 +4,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "array_job.h"
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/batch/slurm.h"
 #include "lobefit/validate/trial_store.h"
 
 namespace lobefit {
@@ -109,15 +108,7 @@ int TrialParts::WriteScript(std::size_t trials, const CommonOptions& common) con
   job.collect.emplace_back("--collect");
   job.folder = folder;
   job.threads = std::max(1, common.threads);
-  const std::filesystem::path script = folder / "array.sbatch";
-  MakeFolder(folder / "slurm");
-  WriteFileAtomically(script, ArrayScript(job));
-  if (submit_) {
-    SendScript(script);
-  } else {
-    fmt::print("Script:  {} ({} shards)\nSend it: sh {}\n", script.string(), job.shards, script.string());
-  }
-  return kExitDone;
+  return WriteOrSend(job, submit_);
 }
 
 }  // namespace lobefit

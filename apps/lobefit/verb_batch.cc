@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "array_job.h"
 #include "batch_progress.h"
 #include "batch_tasks.h"
 #include "report_formats.h"
@@ -14,7 +15,6 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 #include "lobefit/batch/collect.h"
 #include "lobefit/batch/list/inputs.h"
@@ -166,15 +166,7 @@ int WriteSlurm(const BatchVerb& verb, const CommonOptions& common, const WorkLis
   job.collect = {program, "batch", "--out", folder.string(), "--collect"};
   job.folder = folder;
   job.threads = std::max(1, common.threads);
-  const std::filesystem::path script = folder / "array.sbatch";
-  MakeFolder(folder / "slurm");
-  WriteFileAtomically(script, ArrayScript(job));
-  if (!verb.submit) {
-    fmt::print("Script:  {} ({} shards)\nSend it: sh {}\n", script.string(), job.shards, script.string());
-    return kExitDone;
-  }
-  SendScript(script);
-  return kExitDone;
+  return WriteOrSend(job, verb.submit);
 }
 
 int RunBatch(const BatchVerb& verb, const CommonOptions& common) {

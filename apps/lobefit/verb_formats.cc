@@ -51,11 +51,26 @@ int List(bool json) {
   return kExitDone;
 }
 
-int Describe(const std::string& name) {
+nlohmann::ordered_json OptionsToJson(const std::string& format) {
+  nlohmann::ordered_json options = nlohmann::ordered_json::object();
+  for (const ReadOptionEntry& option : ReadOptionTable()) {
+    if (LooksAt(option, format))
+      options[std::string("--") + option.name] = {{"takes", option.allowed}, {"help", option.help}};
+  }
+  return options;
+}
+
+int Describe(const std::string& name, bool json) {
   std::vector<std::string> names;
   for (const Format& format : Formats()) {
     names.emplace_back(format.name);
     if (name != format.name) continue;
+    if (json) {
+      const nlohmann::ordered_json described = {
+          {"name", name}, {"description", format.description}, {"options", OptionsToJson(name)}};
+      fmt::print("{}\n", described.dump(2));
+      return kExitDone;
+    }
     fmt::print("{}: {}\nOptions for what a file leaves open, of every verb that reads one:\n{}", format.name,
                format.description, OptionsOf(name));
     return kExitDone;
@@ -69,7 +84,7 @@ int Describe(const std::string& name) {
 std::function<int()> SetUpFormats(CLI::App* app, CommonOptions* common) {
   auto name = std::make_shared<std::string>();
   app->add_option("NAME", *name, "a format, to see its options");
-  return [=] { return name->empty() ? List(common->json) : Describe(*name); };
+  return [=] { return name->empty() ? List(common->json) : Describe(*name, common->json); };
 }
 
 }  // namespace lobefit

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 
 namespace lobefit {
@@ -59,6 +60,13 @@ echo "collecting job $collect, after it"
       job.shards, Words(job.shard), Quoted(logs), Quoted((job.folder / "array.sbatch").string()), job.name,
       Quoted("exec " + Words(job.collect)));
   return text;
+}
+
+std::filesystem::path WriteArray(const ArrayJob& job) {
+  const std::filesystem::path script = job.folder / "array.sbatch";
+  MakeFolder(job.folder / "slurm");
+  WriteFileAtomically(script, ArrayScript(job));
+  return script;
 }
 
 void SendScript(const std::filesystem::path& script) {

@@ -23,6 +23,9 @@ struct ArrayJob {
 // for their end, good or bad.
 std::string ArrayScript(const ArrayJob& job);
 
+// Writes that script as FOLDER/array.sbatch and makes the folder of its logs. Returns its path; throws OutputError.
+std::filesystem::path WriteArray(const ArrayJob& job);
+
 // Sends such a script to Slurm and waits for sbatch's answer, which goes to stdout. Throws UsageError where there is no
 // sbatch, InputError where it refuses.
 void SendScript(const std::filesystem::path& script);

@@ -90,15 +90,7 @@ std::vector<std::string> Header(const Material& material, const ExportOptions& o
     lines.push_back(fmt::format("numbers {}; error of this material relative to the fit's f_r: {}", result.numbers,
                                 ErrorWords(result.error)));
   }
-  for (const Carried& row : result.carries) {
-    if (row.how == Carries::kExactly) continue;
-    lines.push_back(fmt::format("{}: {}{}", NameOf(row.feature),
-                                row.how == Carries::kNot ? "not carried, " : "approximately, ", row.note));
-  }
-  // A comment ends with its line.
-  for (std::string& line : lines) {
-    for (char& c : line) c = static_cast<unsigned char>(c) < 32 ? ' ' : c;
-  }
+  AddLosses(result.carries, &lines);
   return lines;
 }
 

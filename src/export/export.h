@@ -70,6 +70,10 @@ std::string ExportSummary(const ExportOutcome& outcome);
 std::string RefusalText(const std::vector<Refusal>& refusals);
 // Figures of an error with what they are of, one line.
 std::string ErrorWords(const ExportError& error);
+
+// Adds to the head of a document what the target does not carry exactly; a control character of any line, which could
+// end a comment, becomes a blank.
+void AddLosses(const std::vector<Carried>& carries, std::vector<std::string>* head);
 // What was exported, for its record.
 struct ExportSource {
   std::string kind;    // "material" or "maps"

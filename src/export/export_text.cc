@@ -56,6 +56,17 @@ std::string Row(const ExportResult& result) {
 
 }  // namespace
 
+void AddLosses(const std::vector<Carried>& carries, std::vector<std::string>* head) {
+  for (const Carried& row : carries) {
+    if (row.how == Carries::kExactly) continue;
+    head->push_back(fmt::format("{}: {}{}", NameOf(row.feature),
+                                row.how == Carries::kNot ? "not carried, " : "approximately, ", row.note));
+  }
+  for (std::string& line : *head) {
+    for (char& c : line) c = static_cast<unsigned char>(c) < 32 ? ' ' : c;
+  }
+}
+
 std::string ErrorWords(const ExportError& error) {
   const std::string albedo = std::isnan(error.albedo) ? "" : "; albedo within " + Percent(error.albedo);
   return fmt::format("in the lobe {}; off it {}{}", Levels(error.lobe), Levels(error.off), albedo);

@@ -330,7 +330,8 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
     if (bias && may && (needs_noise || (WantsAsinh(*bias) && !FindRectifiedNoise(*measurement)))) {
       const Metric before = recipe.metric;
       recipe.metric = Metric::kAsinh;
-      // A fit that the noise has biased leaves residuals that look like noise of the value: that of the new fit tells better.
+      // A fit that the noise has biased leaves residuals that look like noise of the value: that of the new fit tells
+      // better.
       constexpr int kMostRounds = 4;
       for (int round = 0; round < kMostRounds; ++round) {
         recipe.noise = NoiseForAsinh(bias->noise);

@@ -29,7 +29,8 @@ std::unique_ptr<EnergyRule> KeepEnergy(const Recipe& recipe, const Layout& layou
   };
   if (keeps()) return nullptr;
   minima->resize(1);
-  // From amplitudes that keep energy: a step of the penalty from far above may end where they are 0, whose cost is flat.
+  // From amplitudes that keep energy: a step of the penalty from far above may end where they are 0, whose cost is
+  // flat.
   const double above = BalanceAt(wi, recipe.model, layout.Report(solution.u.data()), channels, pool).albedo;
   for (std::size_t i = layout.shape_size(); i < layout.size(); ++i) {
     if (layout.coordinates()[i].low == 0) solution.u[i] /= above;

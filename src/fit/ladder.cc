@@ -102,8 +102,8 @@ class Ladder {
 
   bool CanJudge() const { return folds_.size() >= 2; }
 
-  // In the plane of incidence a lobe's width across it is not seen, and enters the values as a factor: with equal widths
-  // the reflectance would exceed 1. Models from here on have a free factor in place of Schlick's term.
+  // In the plane of incidence a lobe's width across it is not seen, and enters the values as a factor: with equal
+  // widths the reflectance would exceed 1. Models from here on have a free factor in place of Schlick's term.
   void FreeTheScale() { scaled_ = true; }
 
   // Judges the model and keeps it, searched from the ellipses of `base` where one is given; null where it cannot be

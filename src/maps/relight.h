@@ -19,8 +19,8 @@ Fallback MedianFallback(const Maps& maps);
 struct RelitTexel {
   bool hidden = false;            // it has no normal
   MapLobe lobe = MapLobe::kNone;  // kNone too where none is by evidence or its numbers are not known
-  // Normal and widths as in engine/model.h; diffuse is the albedo, f0 the stack's, and the width that of `fallback` where
-  // it is not determined.
+  // Normal and widths as in engine/model.h; diffuse is the albedo, f0 the stack's, and the width that of `fallback`
+  // where it is not determined.
   MapPoint point;
 };
 // All planes of the part "parameters", and the status, must be read.

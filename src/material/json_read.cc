@@ -197,7 +197,7 @@ void ReadParameters(const Reader& reader, Material* material) {
 }
 
 // What pictures and predictions compute with.
-void CheckInstrument(const Reader& reader, InstrumentUsed& instrument, std::size_t channels) {
+void CheckInstrument(const Reader& reader, const InstrumentUsed& instrument, std::size_t channels) {
   constexpr double kMostHalfAngle = 30.001 * kPi / 180, kMostAngle = 10.001 * kPi / 180;
   for (const double half_angle : {instrument.source, instrument.detector}) {
     if (!(half_angle >= 0 && half_angle <= kMostHalfAngle))
@@ -214,8 +214,6 @@ void CheckInstrument(const Reader& reader, InstrumentUsed& instrument, std::size
       reader.Fail(fmt::format("the alignment's {} is {:g} degrees; allowed are -10 to 10", angle.name,
                               angle.value * 180 / kPi));
   }
-  // Documents of a single turn need not say its azimuth.
-  if (!instrument.alignment.empty() && instrument.azimuths.empty()) instrument.azimuths = {0};
   const std::size_t turns = instrument.azimuths.size();
   if (instrument.alignment.size() != (turns == 0 ? 0 : turns + 1))
     reader.Fail(fmt::format("the alignment has {} angles, {} belong to {} turns of the sample",
@@ -259,6 +257,8 @@ InstrumentUsed ReadInstrument(const Reader& reader, const Json& json, std::size_
     for (const Json& offset : reader.Member(json, "offset"))
       instrument.offset.push_back({reader.Get<double>(offset, "value"), reader.GetNumbers(offset, "stderr", 1)[0]});
   }
+  // Documents of a single turn need not say its azimuth.
+  if (!instrument.alignment.empty() && instrument.azimuths.empty()) instrument.azimuths = {0};
   CheckInstrument(reader, instrument, channels);
   return instrument;
 }

@@ -68,8 +68,8 @@ struct Surface {
 BrdfFunction SurfaceBrdf(const Surface& surface);
 
 // Albedo of an isotropic, height-correlated GGX lobe whose Fresnel term is f0 + (f90 - f0) (1 - c)^5: f0 a(mu) + f90
-// b(mu), by quadrature over side x side visible normals, tabulated over mu. Side 64: 0.1 % of the albedo, 20 ms; 16: 1 %,
-// 1 ms.
+// b(mu), by quadrature over side x side visible normals, tabulated over mu. Side 64: 0.1 % of the albedo, 20 ms; 16: 1
+// %, 1 ms.
 class IsotropicAlbedo {
  public:
   explicit IsotropicAlbedo(double alpha, int side = 64);

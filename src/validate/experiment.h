@@ -38,8 +38,8 @@ struct Trial {
   bool converged = false, determined = false;
   std::vector<std::string> degenerate;
   double cost = 0;
-  // Cost of the true parameters on the same samples; NaN where the fitted model is not the truth's, or the fit chose its
-  // metric or noise itself.
+  // Cost of the true parameters on the same samples; NaN where the fitted model is not the truth's, or the fit chose
+  // its metric or noise itself.
   double cost_at_truth = 0;
   double slope_difference = 0;  // of the fitted lobes from the true ones; NaN as above
   std::size_t minima = 0, samples = 0, incidences = 0;
@@ -56,8 +56,8 @@ Trial RunTrial(const Experiment& experiment, std::size_t index);
 // A measurement (synthetic, with known truth) fitted and compared.
 Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measurement measurement);
 
-// The trials of `indices`, one fit a thread. `done` is called after each, from any thread; once `stop` is set no further
-// trial begins.
+// The trials of `indices`, one fit a thread. `done` is called after each, from any thread; once `stop` is set no
+// further trial begins.
 void RunTrials(const Experiment& experiment, const std::vector<std::size_t>& indices, int threads,
                const std::function<void(std::size_t index, Trial trial)>& done, const std::atomic<bool>& stop);
 // Trials [0, count); those that were not run come back as not done. `advance` may be empty.

@@ -36,8 +36,8 @@ struct MeasurementLayout {
 // and for an isotropic layout of an anisotropic truth, InputError for a file that cannot be read.
 MeasurementLayout MakeLayout(const LayoutRequest& request, const Truth& truth);
 
-// Throws UsageError where a disc is wider than kMostSteps of the layout's steps (fit/instrument.h), as a fit does. Discs
-// that overlap are what an instrument with a fine drive measures.
+// Throws UsageError where a disc is wider than kMostSteps of the layout's steps (fit/instrument.h), as a fit does.
+// Discs that overlap are what an instrument with a fine drive measures.
 void RequireApertureWithin(const MeasurementLayout& layout, const Noise& noise);
 
 }  // namespace lobefit

@@ -78,11 +78,9 @@ std::string KeyOf(const Experiment& experiment) {
       fmt::format("lobefit {}\n{}\n{}\n{}\nseed {} starts {} isotropic {} drawn {}\n", Version(),
                   ToJson(MaterialOf(experiment.truth)), ToText(experiment.noise), ToToml(experiment.recipe),
                   experiment.seed, experiment.fit.starts, experiment.isotropic, experiment.range.has_value());
-  const DirectionList& directions = experiment.directions;
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const Vec3 &wi = directions.wi[i], &wo = directions.wo[i];
-    text += fmt::format("{} {} {} {} {} {}\n", wi.x, wi.y, wi.z, wo.x, wo.y, wo.z);
-  }
+  // The numbers themselves, not as text, which would take 200 bytes a pair.
+  for (const std::vector<Vec3>* side : {&experiment.directions.wi, &experiment.directions.wo})
+    text += Sha256Hex({reinterpret_cast<const char*>(side->data()), side->size() * sizeof(Vec3)});
   return Sha256Hex(text);
 }
 
@@ -101,15 +99,19 @@ std::vector<Trial> TrialStore::Read(std::size_t count) const {
     for (std::string text; std::getline(file, text);) {
       // The first line of a segment says who writes.
       const Json line = Json::parse(text, nullptr, false);
-      if (!line.is_object() || !line.contains("trial")) continue;
+      if (!line.is_object() || !line.contains("trial") || !line.contains("key")) continue;
       if (line.at("key") != key_) {
         throw UsageError(fmt::format(
             "{}: holds trials of another validation or version of lobefit; give the same source and options again, or "
             "choose another --out",
             PrintableName(segment.string())));
       }
-      const auto index = line.at("trial").get<std::size_t>();
-      if (index < count) trials[index] = TrialOf(line);
+      try {
+        const auto index = line.at("trial").get<std::size_t>();
+        if (index < count) trials[index] = TrialOf(line);
+      } catch (const Json::exception&) {
+        // Not a line of Append: the trial is not done.
+      }
     }
   }
   return trials;

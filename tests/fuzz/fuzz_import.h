@@ -1,5 +1,5 @@
-// One run of a reader of renderers' files on arbitrary bytes: it reads or throws InputError, and what it reads is f_r at
-// any directions. Files that a material names are looked for in a folder that is not there.
+// One run of a reader of renderers' files on arbitrary bytes: it reads or throws InputError, and what it reads is f_r
+// at any directions. Files that a material names are looked for in a folder that is not there.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Exported maps read back at 1000 texels: the textures are found by the document, decoded, and evaluated by the models of
-// the renderers as they are written anew in tests/support/renderer_models.h.
+// Exported maps read back at 1000 texels: the textures are found by the document, decoded, and evaluated by the models
+// of the renderers as they are written anew in tests/support/renderer_models.h.
 #include <array>
 #include <functional>
 #include <map>

@@ -191,8 +191,8 @@ void EvaluatePiece(RadialPiece* piece, int masking, bool gradient) {
   }
 }
 
-// gradient[k * count + i] = d specular / dq_k, sample by sample across the coefficients. `tables`: the differences of wi
-// and wo, `stride` apart; `less`: d ln Z / dq, as long.
+// gradient[k * count + i] = d specular / dq_k, sample by sample across the coefficients. `tables`: the differences of
+// wi and wo, `stride` apart; `less`: d ln Z / dq, as long.
 void ByCoefficients(const RadialPiece& piece, const double* const* tables, std::size_t stride, const double* less,
                     std::size_t size, std::size_t count, double* gradient) {
   const hn::CappedTag<double, 4> d;

@@ -7,6 +7,12 @@
 #include "lobefit/math/vec.h"
 
 namespace lobefit {
+namespace {
+
+// No misfit of a lobe's tail makes up for as much: the scale is another one.
+constexpr double kNoReflectance = 2;
+
+}  // namespace
 
 std::vector<Vec3> SpreadIncidences(const Incidences& incidences, double theta_max, std::size_t most) {
   std::vector<Vec3> within;  // by polar angle, as Incidences are
@@ -42,9 +48,9 @@ void JudgeEnergy(const EnergyBalance& balance, Verdict* verdict) {
   if (!CreatesEnergy(balance) || verdict->kind == VerdictKind::kDoesNotDescribe) return;
   verdict->kind = VerdictKind::kRough;
   verdict->advice =
-      "it reflects more than it receives: --energy conserving keeps it from that, and --scale free says that values "
-      "are "
-      "not calibrated";
+      balance.albedo > kNoReflectance
+          ? "it reflects far more than it receives: the values are no f_r in 1/sr; --scale free fits their shape"
+          : "it reflects more than it receives: --energy conserving keeps it from that";
 }
 
 }  // namespace lobefit

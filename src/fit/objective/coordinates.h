@@ -57,7 +57,8 @@ class Layout {
   // The coordinates of profiles, from one point to another.
   void CopyProfiles(const std::vector<double>& from, std::vector<double>* to) const;
 
-  // Coordinate of each column of channel `c` of the kernel, the residual's left out; -1: a fixed parameter, or the gain.
+  // Coordinate of each column of channel `c` of the kernel, the residual's left out; -1: a fixed parameter, or the
+  // gain.
   std::vector<int> CoordinatesOfColumns(std::size_t c) const;
 
   // Gauss-Newton matrix J^T J and gradient J^T r in solver coordinates from the sums over samples.

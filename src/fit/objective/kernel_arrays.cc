@@ -31,7 +31,8 @@ void SchlickArrays(const double* cos_d, std::size_t n, double* p5, double* one_m
   }
 }
 
-// The operations of FresnelCurveBasis, in the interval of each lane: its knots from the third before to the third behind.
+// The operations of FresnelCurveBasis, in the interval of each lane: its knots from the third before to the third
+// behind.
 void CurveBasisArrays(const double* cos_d, std::size_t n, std::size_t stride, double* to) {
   constexpr double kKnots[] = {0, 0, 0, 0, 0.25, 0.6, 1, 1, 1, 1};
   const D64 d;

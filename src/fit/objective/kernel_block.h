@@ -498,8 +498,8 @@ class Block {
       curve_basis_, interfaced_, diffuse_, diffuse_gradient_;
   std::span<double> argument_gradients_, argument_contracted_, factor_by_argument_;
   std::span<double> f_, residual_, slope_, columns_, sqrt_weight_, gain_, gain_column_, inverse_cos_i_, reading_slope_;
-  // Of the alignment: directions in the sample's frame, derivatives of f_r by its angles [angle][channel], and the model
-  // without instrument that gives them.
+  // Of the alignment: directions in the sample's frame, derivatives of f_r by its angles [angle][channel], and the
+  // model without instrument that gives them.
   std::span<double> moved_, by_angle_;
   KernelSamples moved_samples_ = {};
   std::unique_ptr<KernelModel> straight_;

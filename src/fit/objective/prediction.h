@@ -13,7 +13,8 @@
 
 namespace lobefit {
 
-// f_r[channel][sample], 1/sr, as the material's instrument would read it, if it has one (Reading, without gains). The result does not depend on the number of threads.
+// f_r[channel][sample], 1/sr, as the material's instrument would read it, if it has one (Reading, without gains). The
+// result does not depend on the number of threads.
 std::vector<std::vector<double>> Predict(const Material& material, const Samples& samples, ThreadPool* pool);
 
 // Sums over samples and channels; samples that a metric has no number for (relative: measured f_r <= 0) do not count.

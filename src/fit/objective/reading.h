@@ -20,8 +20,8 @@ class Reading {
   // discs are too wide for the cubature of a lobe.
   Reading(const Material& material, std::optional<Beam> held);
 
-  // (*readings)[c][i], 1/sr, for directions above the horizon. `sample_azimuth`: of the sample on its stage, a direction
-  // each, radians; null: as in the first turn. Safe from several threads.
+  // (*readings)[c][i], 1/sr, for directions above the horizon. `sample_azimuth`: of the sample on its stage, a
+  // direction each, radians; null: as in the first turn. Safe from several threads.
   void Evaluate(const DirectionArrays& directions, const double* sample_azimuth,
                 std::vector<std::vector<double>>* readings) const;
 

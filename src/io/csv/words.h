@@ -16,8 +16,8 @@ struct NameWords {
 };
 
 // Greek letters become their names, letters with accents those without, subscripts and LaTeX plain text, words of other
-// languages English ones (foreign_words.h). A unit is what stands in brackets at the end, behind a slash or a comma, or the last word, where it is a unit of anything; other
-// brackets are words like the rest.
+// languages English ones (foreign_words.h). A unit is what stands in brackets at the end, behind a slash or a comma, or
+// the last word, where it is a unit of anything; other brackets are words like the rest.
 NameWords SplitName(std::string_view name);
 
 }  // namespace lobefit

@@ -1,6 +1,7 @@
 // pab-opto "Mountain" text: one incident direction a file, header keys in '#' lines, then rows theta phi value (or X Y
-// Z) in degrees. Files that were joined are read as their parts. The incident direction points to the source, in the same coordinates as the rows. "DSF" values are f_r
-// cos(theta_o); BSDF, BRDF and BTDF have no cosine. theta > 90 degrees is the other side of the sample.
+// Z) in degrees. Files that were joined are read as their parts. The incident direction points to the source, in the
+// same coordinates as the rows. "DSF" values are f_r cos(theta_o); BSDF, BRDF and BTDF have no cosine. theta > 90
+// degrees is the other side of the sample.
 #include "lobefit/io/mountain/reader.h"
 
 #include <cmath>

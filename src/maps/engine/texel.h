@@ -55,8 +55,8 @@ class TexelFitter {
   TexelFitter(const MapRules& rules, const std::vector<Vec3>& lights, int channels);
   // Moves the lights, as many as before: of the texel that is fitted next.
   void MoveLights(const std::vector<Vec3>& lights);
-  // values[channel stride + light]: f_r cos_theta_i; NaN: none, infinite: saturated. log_alpha: shared by all texels and
-  // held, or NaN. `point`, `model`: where the search ended, unless null.
+  // values[channel stride + light]: f_r cos_theta_i; NaN: none, infinite: saturated. log_alpha: shared by all texels
+  // and held, or NaN. `point`, `model`: where the search ended, unless null.
   TexelFit Fit(const float* values, std::size_t stride, double log_alpha, MapPoint* point = nullptr,
                MapModel* model = nullptr);
   // Slope and curvature of the cost by ln alpha along the texel's valley (all else follows), at the point of the last

@@ -14,8 +14,8 @@ struct Estimate {
   double value = 0, error = 0;  // standard, texels taken as independent
 };
 
-// Each is one number for the whole stack, to first order about the fit: by what of its effect on the values of a texel no
-// change of the texel's own numbers can meet.
+// Each is one number for the whole stack, to first order about the fit: by what of its effect on the values of a texel
+// no change of the texel's own numbers can meet.
 struct StackDoubts {
   Estimate exponent;  // of the photographs over the fit, less 1: 0 where the encoding is right
   Estimate nearness;  // 1 / distance of the lights in widths of the picture: 0 for distant ones

@@ -26,8 +26,8 @@ StackFiles ReadLightFile(const std::filesystem::path& file);
 // A dome of RelightLab (.dome, JSON): directions, or positions in the unit of imageWidth; the images beside it by name.
 StackFiles ReadDome(const std::filesystem::path& file);
 
-// Images named by angles, "tl045 pl090 tv000 pv000.png" with anything between [as UBO2003 and UTIA have it]: polar angle
-// and azimuth of light and viewer, degrees. Views other than from above are left out, and counted.
+// Images named by angles, "tl045 pl090 tv000 pv000.png" with anything between [as UBO2003 and UTIA have it]: polar
+// angle and azimuth of light and viewer, degrees. Views other than from above are left out, and counted.
 StackFiles ReadAngleNames(const std::filesystem::path& folder);
 bool HasAngleNames(const std::filesystem::path& folder);
 
@@ -38,8 +38,8 @@ StackFiles ReadManifest(const std::filesystem::path& file);
 // `columns` rows of another length are found, transposed. Throws InputError with the line.
 std::vector<std::vector<double>> ReadTable(const std::filesystem::path& file, std::size_t columns);
 
-// Takes the places of the lights for positions. Throws InputError, with `name` in front, where one is not in front of the
-// picture. reference_mm of `near` is filled.
+// Takes the places of the lights for positions. Throws InputError, with `name` in front, where one is not in front of
+// the picture. reference_mm of `near` is filled.
 void SetNear(NearLights near, const std::string& name, Stack* stack);
 
 // By its extension, an image that OpenImage may read.

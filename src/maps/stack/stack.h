@@ -30,8 +30,8 @@ struct NearLights {
 };
 
 // Everything but the pixels. x runs right and y up over the picture, z to the camera, which is orthographic: wo = +z.
-// After division by the intensity (and, of near lights, by what distance and axis make of it) a pixel is f_r cos_theta_i, in 1/sr where `calibrated`, else times one unknown factor
-// of the whole stack.
+// After division by the intensity (and, of near lights, by what distance and axis make of it) a pixel is f_r
+// cos_theta_i, in 1/sr where `calibrated`, else times one unknown factor of the whole stack.
 struct Stack {
   std::filesystem::path path;  // as given
   std::string layout;          // "DiLiGenT folder", ...

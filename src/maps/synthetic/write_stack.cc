@@ -27,7 +27,8 @@ Stack GeometryOf(const Maps& maps, const StackSynthesis& synthesis) {
   return stack;
 }
 
-// One photograph: f_r cos_theta_i times the irradiance, [texel channels + channel]; NaN of texels without a normal becomes 0.
+// One photograph: f_r cos_theta_i times the irradiance, [texel channels + channel]; NaN of texels without a normal
+// becomes 0.
 std::vector<float> Photograph(const Maps& maps, const StackSynthesis& synthesis, std::size_t light) {
   const std::size_t channels = static_cast<std::size_t>(maps.channels), texels = maps.rows.rows * maps.rows.width;
   Relighting relighting(maps, {synthesis.lights[light]}, synthesis.calibrated, synthesis.fallback);

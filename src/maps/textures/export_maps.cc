@@ -54,15 +54,7 @@ std::vector<std::string> Header(const ExportOptions& options, const ExportResult
       fmt::format("command: {}", options.command),
       fmt::format("error relative to the maps' f_r: {}", ErrorWords(result.error))};
   lines.insert(lines.end(), remarks.begin(), remarks.end());
-  for (const Carried& row : result.carries) {
-    if (row.how == Carries::kExactly) continue;
-    lines.push_back(fmt::format("{}: {}{}", NameOf(row.feature),
-                                row.how == Carries::kNot ? "not carried, " : "approximately, ", row.note));
-  }
-  // A comment ends with its line.
-  for (std::string& line : lines) {
-    for (char& c : line) c = static_cast<unsigned char>(c) < 32 ? ' ' : c;
-  }
+  AddLosses(result.carries, &lines);
   return lines;
 }
 

@@ -30,8 +30,8 @@ double WhiteOf(const Maps& maps) {
   return *at > 0 ? *at : 1;
 }
 
-// Azimuth of the tangent in the mesh's plane that, made perpendicular to the normal, is the axis at `angle` in the frame
-// of the shortest turn (engine/model.h).
+// Azimuth of the tangent in the mesh's plane that, made perpendicular to the normal, is the axis at `angle` in the
+// frame of the shortest turn (engine/model.h).
 double AzimuthOf(const Vec3& normal, double angle) {
   const MapFrame frame = FrameOf(normal);
   const Vec3 axis = std::cos(angle) * frame.t + std::sin(angle) * frame.b;

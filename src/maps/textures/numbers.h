@@ -31,8 +31,8 @@ class MapNumbers {
   // A number that is not determined becomes the median of the determined ones of its block of 16 x 16 texels or, where
   // they are fewer than 8, of the block of twice the side, and so on to the whole picture; a lobe of unknown widths is
   // round. Texels without a lobe by evidence keep none. Outside the mask: +z and black. Diffuse and f0 are divided by
-  // `white`, the albedo in the maps' unit that is 1; NaN: that of Calibrated maps, 1, or of others the 99.5th percentile
-  // of the largest channel of diffuse + f0. `maps` must outlive this, with all planes read.
+  // `white`, the albedo in the maps' unit that is 1; NaN: that of Calibrated maps, 1, or of others the 99.5th
+  // percentile of the largest channel of diffuse + f0. `maps` must outlive this, with all planes read.
   MapNumbers(const Maps& maps, bool calibrated, double white);
 
   std::size_t width() const { return maps_.rows.width; }
