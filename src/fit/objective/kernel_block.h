@@ -239,23 +239,8 @@ class Block {
  private:
   // The directions of this block in the frame of the sample.
   void MoveDirections(std::size_t begin, const std::vector<double>& angles) {
-    constexpr double kLeastCosine = 1e-4;
-    const std::vector<double>& azimuths = model_.alignment.azimuths;
-    std::vector<TurnedAxes> turns;
-    for (std::size_t t = 0; t < azimuths.size(); ++t)
-      turns.emplace_back(Misalignment{angles[0], angles[1], t == 0 ? 0.0 : angles[t + 1]}, azimuths[t]);
-    for (std::size_t side = 0; side < 6; side += 3) {
-      for (std::size_t i = 0; i < count_; ++i) {
-        const TurnedAxes& turn = turns[samples_.turn == nullptr ? 0 : samples_.turn[begin + i]];
-        const std::size_t at = begin + i;
-        Vec3 w = turn.InSampleFrame(
-            {samples_.direction[side][at], samples_.direction[side + 1][at], samples_.direction[side + 2][at]});
-        // Tilted below its own horizon the sample would see nothing.
-        w.z = std::max(w.z, kLeastCosine);
-        const double all[3] = {w.x, w.y, w.z};
-        for (std::size_t k = 0; k < 3; ++k) moved_[(side + k) * kBlock + i] = all[k];
-      }
-    }
+    TurnDirections(TurnsOf(model_.alignment.azimuths, angles), samples_.direction, samples_.turn, begin, count_, kBlock,
+                   moved_.data());
   }
 
   // Central differences of f_r by the angles.

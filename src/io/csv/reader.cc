@@ -15,6 +15,7 @@
 #include "lobefit/io/csv/distinctions.h"
 #include "lobefit/io/csv/header.h"
 #include "lobefit/io/csv/layout.h"
+#include "lobefit/io/csv/mark_tally.h"
 #include "lobefit/io/csv/row_parser.h"
 #include "lobefit/io/csv/stated_angles.h"
 #include "lobefit/io/csv/wavelengths.h"
@@ -54,7 +55,7 @@ class CsvReader {
     }
     MeasurementBuilder builder(layout_.channels);
     ReadRows(&builder);
-    AddRemarks();
+    marks_.AddRemarks(&notes_.remarks);
     if (by_wavelength_) {
       Measurement gathered;
       WithPath([&] {
@@ -276,7 +277,7 @@ class CsvReader {
       ranges_[k].first = std::min(ranges_[k].first, number);
       ranges_[k].second = std::max(ranges_[k].second, number);
     }
-    if (!row.marks().empty()) NoteMarks(row, line);
+    if (!row.marks().empty()) marks_.Add(row.marks(), line);
     for (const ValueGroup& group : layout_.groups) {
       for (const auto& [coordinate, number] : group.fixed) at_[static_cast<std::size_t>(coordinate)] = number;
       AddSample(row, group, line, builder);
@@ -410,31 +411,6 @@ class CsvReader {
     }
   }
 
-  void NoteMarks(const RowParser& row, std::uint32_t line) {
-    for (const auto& [column, word] : row.marks()) {
-      const std::string text = Excerpt(word);
-      auto known = std::find_if(marks_.begin(), marks_.end(), [&](const Mark& mark) { return mark.word == text; });
-      if (known == marks_.end()) {
-        if (marks_.size() >= kMostMarks) {
-          ++other_marks_;
-          continue;
-        }
-        known = marks_.insert(marks_.end(), {text, line, 0});
-      }
-      ++known->count;
-    }
-  }
-
-  void AddRemarks() {
-    for (const Mark& mark : marks_) {
-      notes_.remarks.push_back(std::to_string(mark.count) + (mark.count == 1 ? " field" : " fields") +
-                               " without a number: " + (mark.word.empty() ? "empty" : "'" + mark.word + "'") +
-                               ", first in line " + std::to_string(mark.line));
-    }
-    if (other_marks_ > 0)
-      notes_.remarks.push_back(std::to_string(other_marks_) + " more fields without a number, of other words");
-  }
-
   // Of the light and of the viewer together, where the row has both.
   std::uint8_t NumberOfPolarisation(const RowParser& row) {
     std::string word;
@@ -479,13 +455,6 @@ class CsvReader {
     return stated;
   }
 
-  struct Mark {
-    std::string word;
-    std::uint32_t line = 0;
-    std::size_t count = 0;
-  };
-  static constexpr std::size_t kMostMarks = 6;
-
   const InputFile& file_;
   const ReadOptions& options_;
   CsvHeader header_;
@@ -496,8 +465,7 @@ class CsvReader {
   std::vector<std::pair<double, double>> ranges_;  // of the coordinates that columns give, in the file's units
   std::vector<double> values_;
   std::optional<WavelengthTable> by_wavelength_;  // where rows have wavelengths of their own
-  std::vector<Mark> marks_;
-  std::size_t other_marks_ = 0;
+  MarkTally marks_;
   std::size_t rows_ = 0, words_ = 0, words_line_ = 0;
   std::string words_message_, words_text_;
   std::vector<std::uint8_t> polarisations_;  // one a sample
