@@ -108,6 +108,12 @@ Recipe ThroughInstrument(const Recipe& recipe, const Measurement& measurement) {
   if (instrument.alignment) instrument.alignment->azimuths = AzimuthsOfTurns(measurement);
   const Aperture aperture = through.aperture();
   if (!aperture.any()) return through;
+  const std::size_t coat = CoatOf(through.model);
+  if (coat < through.model.lobes.size() && through.model.lobes[coat].fresnel == Fresnel::kCoatRefracted) {
+    throw InputError("recipe '" + recipe.name +
+                     "': what lies below a refracting coat is not averaged over the discs of an instrument; use "
+                     "fresnel = 'coat-layered', or leave --source and --detector out (0 where the file states them)");
+  }
   const std::optional<double> step = DetectorStep(measurement, incidences);
   const double widest = std::max(aperture.source, aperture.detector);
   if (step && widest > kMostSteps * *step) {

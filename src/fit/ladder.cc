@@ -114,6 +114,7 @@ class Ladder {
     return kept;
   }
 
+  bool scaled() const { return scaled_; }
   const Rung& First() const { return rungs_[0]; }
   // The rung that predicts best so far.
   const Rung& Best() const {
@@ -309,6 +310,13 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   Model interfaced = ladder.Best().recipe.model;
   interfaced.diffuse = Diffuse::kInterfaced;
   ladder.Try(interfaced, ladder.BestName() + "+interfaced", &ladder.Best());
+  // Below a coat the diffuse part is Lambertian; a coat's reflectance is calibrated, so that a free scale has none.
+  Model coated = ladder.Best().recipe.model;
+  if (!ladder.scaled() && !spectrum && coated.lobes.size() < kMostLobes) {
+    coated.diffuse = Diffuse::kLambert;
+    coated.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered});
+    ladder.Try(coated, ladder.BestName() + "+coat", &ladder.Best());
+  }
   for (const bool retro : {true, false}) {
     Model more = ladder.Best().recipe.model;
     if (more.lobes.size() == kMostLobes || (!retro && (more.lobes.size() == 1 || spectrum))) continue;

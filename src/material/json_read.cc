@@ -194,6 +194,13 @@ void ReadParameters(const Reader& reader, Material* material) {
     }
     material->parameters.push_back(fitted);
   }
+  const std::size_t coat = CoatOf(material->model);
+  if (coat == material->model.lobes.size()) return;
+  const std::vector<double>& ior = material->parameters[FirstFresnel(material->model, coat)].values;
+  for (const double value : ior) {
+    if (!(value >= 1)) reader.Fail(fmt::format("the coat's ior is {:g}; it must be at least 1", value));
+    if (value != ior[0]) reader.Fail("the coat's ior differs from channel to channel; it is one for all");
+  }
 }
 
 // What pictures and predictions compute with.

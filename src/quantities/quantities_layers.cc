@@ -190,12 +190,10 @@ Quantity CoatQuantity() {
   AddDerivatives(&q, "f_layered", "1/sr", parameters);
   q.evaluate = [](const double* in, double* out) {
     const SlopeDistribution slopes = {SlopeKind::kGgx, in[0], in[1], in[2], in[3], in[4]};
-    const double f0 = in[5], albedo = in[6], ior = in[8], nn = ior * ior;
+    const double f0 = in[5], albedo = in[6], ior = in[8];
     const Vec3 o = DirectionAt(in + 10), i = DirectionAt(in + 13);
     out[1] = DielectricTransmittance(o.z, ior);
     out[2] = DielectricTransmittance(i.z, ior);
-    double dF_ex;
-    const double enters = 1.0 - DielectricMeanReflectance(ior, &dF_ex);
     for (std::size_t kind = 0; kind < 2; ++kind) {
       const bool refracted = kind == 0;
       const CoatFactors coat = EvaluateCoat({in[7], ior, in[9], refracted}, i, o);
@@ -203,8 +201,8 @@ Quantity CoatQuantity() {
       // rho / (pi (1 - rho F_in)) = rho' n^2 / (pi (1 - F_ex)).
       double drho = 1, dior = 0;
       const double apparent = refracted ? ApparentAlbedo(albedo, ior, &drho, &dior) : albedo;
-      const double scale = (refracted ? nn : 1.0) * kInvPi / enters;
-      const double dscale = scale * (dF_ex / enters + (refracted ? 2.0 / ior : 0.0));
+      double dscale;
+      const double scale = LambertBelowCoat(ior, refracted, &dscale);
       const double bracket = base.value + apparent * scale;
       const double value = coat.lobe + coat.through * bracket;
       out[0] = coat.lobe;

@@ -45,7 +45,7 @@ Aperture Recipe::aperture() const {
 }
 
 bool Recipe::IsFree(std::size_t index) const {
-  return Parameters(model)[index].free && parameters[index].fixed.empty();
+  return (Parameters(model)[index].free || parameters[index].free) && parameters[index].fixed.empty();
 }
 
 Recipe DefaultRecipe(const Model& model, const std::string& name) {

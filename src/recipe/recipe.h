@@ -35,6 +35,7 @@ struct ParameterRecipe {
   std::vector<double> fixed;
   std::optional<double> low, high;
   bool shared = false;  // one value for all channels
+  bool free = false;    // fitted, though the table would leave it at its start
 };
 
 // A table of squared ellipsoidal lobes in place of a model.

@@ -67,15 +67,16 @@ std::vector<double> Numbers(const toml::table& table, const char* key, bool per_
   return numbers;
 }
 
-// One parameter: { start, fixed, bounds = [low, high], shared }.
+// One parameter: { start, fixed, bounds = [low, high], shared, free }.
 ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter, const TomlFile& place) {
   const std::string& name = parameter.json_name;
   if (!node.is_table()) {
-    place.Fail(node.source(),
-               fmt::format("'{}' must be a table such as {{ start = 0.2 }}; keys: start, fixed, bounds, shared", name));
+    place.Fail(
+        node.source(),
+        fmt::format("'{}' must be a table such as {{ start = 0.2 }}; keys: start, fixed, bounds, shared, free", name));
   }
   const toml::table& table = *node.as_table();
-  place.CheckKeys(table, {"start", "fixed", "bounds", "shared"}, "of parameter '" + name + "'");
+  place.CheckKeys(table, {"start", "fixed", "bounds", "shared", "free"}, "of parameter '" + name + "'");
   const double factor = InsideFactor(parameter);
   ParameterRecipe recipe;
   recipe.shared = parameter.shared;
@@ -107,8 +108,21 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
   }
   if (!recipe.fixed.empty() && (!recipe.start.empty() || recipe.low))
     place.Fail(node.source(), fmt::format("'{}' is fixed: start and bounds do not apply", name));
-  if (!parameter.free && (!recipe.start.empty() || recipe.low || recipe.shared != parameter.shared)) {
-    place.Fail(node.source(), fmt::format("'{}' is not a free parameter of this ndf; it can only be fixed", name));
+  if (const toml::node* free = table.get("free")) {
+    if (!free->is_boolean() || !*free->value<bool>())
+      place.Fail(free->source(), fmt::format("'free' of '{}' must be true; {{ fixed = ... }} fixes it", name));
+    recipe.free = true;
+  }
+  const bool may_be_free = parameter.free || parameter.group != ParameterGroup::kShape;
+  if (recipe.free && (!may_be_free || !recipe.fixed.empty())) {
+    place.Fail(node.source(), recipe.fixed.empty()
+                                  ? fmt::format("'{}' is not a free parameter of this ndf; it can only be fixed", name)
+                                  : fmt::format("'{}' is both fixed and free", name));
+  }
+  if (!parameter.free && !recipe.free && (!recipe.start.empty() || recipe.low || recipe.shared != parameter.shared)) {
+    place.Fail(node.source(),
+               may_be_free ? fmt::format("'{}' is not fitted unless it has free = true", name)
+                           : fmt::format("'{}' is not a free parameter of this ndf; it can only be fixed", name));
   }
   for (const std::vector<double>& values : {recipe.start, recipe.fixed}) {
     for (const double value : values) {
@@ -314,12 +328,19 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
   recipe.wavelengths_nm = Numbers(root, "wavelengths_nm", true, 1, place);
   if (const toml::table* table = Table(root, "parameters", place)) {
     const std::vector<Parameter> parameters = Parameters(recipe.model);
+    const std::size_t coat = CoatOf(recipe.model);
     std::vector<std::string> names;
     for (const Parameter& parameter : parameters) names.push_back(parameter.json_name);
     place.CheckKeys(*table, names, "of this model's parameters");
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       if (const toml::node* node = table->get(names[i]))
         recipe.parameters[i] = ReadParameter(*node, parameters[i], place);
+      const bool of_coat = coat < recipe.model.lobes.size() && i == FirstFresnel(recipe.model, coat);
+      if (of_coat && (!recipe.parameters[i].shared || recipe.parameters[i].fixed.size() > 1 ||
+                      recipe.parameters[i].start.size() > 1)) {
+        place.Fail(table->get(names[i])->source(),
+                   fmt::format("'{}' of a coat is one for all channels, which pass it on one way", names[i]));
+      }
     }
   }
   return recipe;
@@ -389,6 +410,7 @@ std::string ToToml(const Recipe& recipe) {
                                   FormatDouble(*parameter.high / factor)));
     if (parameter.shared != parameters[i].shared)
       parts.emplace_back(parameter.shared ? "shared = true" : "shared = false");
+    if (parameter.free) parts.emplace_back("free = true");
     if (!parts.empty()) text += fmt::format("\"{}\" = {{ {} }}\n", parameters[i].json_name, Join(parts));
   }
   return text;

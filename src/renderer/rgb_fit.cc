@@ -100,6 +100,8 @@ Material RgbFit(const FittedBrdf& fit, const ChannelMap& map) {
       material.model.lobes[l].metal.clear();
     } else if (fresnel == Fresnel::kDielectric) {
       MapIndex(fit, map, l, first, nullptr);
+    } else if (IsCoat(fresnel)) {
+      first->values.assign(map.channels.size(), fit.material().parameters[FirstFresnel(material.model, l)].values[0]);
     }
   }
   for (FittedParameter& parameter : material.parameters) {

@@ -150,6 +150,25 @@ SyntheticCase Retro() {
                                   {0.1},         {0.1},          {0},   {0},    {0},    {0.3, 0.2, 0.1},
                                   {0.5, 0.9, 1}, {0.1, 0.2, 0.3}});
 }
+// A coloured coat that refracts, over an ellipsoid, a retro lobe and a Lambertian part.
+SyntheticCase Coated() {
+  return Made({{Ndf::kEllipsoid, Masking::kSmithSeparable, Fresnel::kSchlick},
+               {Ndf::kGgx, Masking::kSmithHeight, Fresnel::kCoatRefracted},
+               {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kNone, "", LobeDirection::kRetro}},
+              Diffuse::kLambert, {{0.3}, {0.12}, {0.05}, {-0.08}, {0.4},           {0.9, 0.6, 0.3}, {0.1},
+                                  {0.1}, {0},    {0},    {0},     {1.6, 1.6, 1.6}, {0.1, 0.3, 0.6}, {0.2},
+                                  {0.2}, {0},    {0},    {0},     {0.1, 0.2, 0.3}, {0.5, 0.3, 0.9}});
+}
+SyntheticCase SpectralCoat() {
+  SyntheticCase synthetic = Coated();
+  synthetic.model.lobes[1].fresnel = Fresnel::kCoatLayered;
+  synthetic.channels = {"450nm", "500nm", "550nm", "600nm"};
+  const std::vector<Parameter> parameters = Parameters(synthetic.model);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].per_channel) synthetic.values[p].push_back(synthetic.values[p][0]);
+  }
+  return synthetic;
+}
 SyntheticCase SpectralProfile() {
   SyntheticCase synthetic = TiltedProfile();
   synthetic.channels = {"450nm", "500nm", "550nm", "600nm"};
@@ -189,7 +208,9 @@ const ShaderCase kShaderCases[] = {{"tilted", test::Tilted},
                                    {"light_student", LightStudent},
                                    {"student_schlick_smith", StudentSchlickSmith},
                                    {"retro", Retro},
-                                   {"spectral_profile", SpectralProfile}};
+                                   {"spectral_profile", SpectralProfile},
+                                   {"coated", Coated},
+                                   {"spectral_coat", SpectralCoat}};
 
 class Shaders : public testing::TestWithParam<ShaderCase> {
  protected:

@@ -47,6 +47,10 @@ SyntheticCase TruthOf(const Model& model) {
         truth.values.insert(truth.values.end(),
                             {{0.9, 0.8}, {0.6, 0.5}, {0.3, 0.2}, {0.25, 0.1}, {0.3, 0.15}, {0.4, 0.2}});
         break;
+      case Fresnel::kCoatLayered:
+      case Fresnel::kCoatRefracted:
+        truth.values.insert(truth.values.end(), {{1.6, 1.6}, {0, 0}});
+        break;
       case Fresnel::kNone:
         truth.values.push_back({0.8, 0.4});
         break;
@@ -83,6 +87,11 @@ std::vector<Model> EveryChoice() {
   add({Ndf::kBeckmann}, Diffuse::kNone);
   Model two = {{{Ndf::kGgx}, {Ndf::kBeckmann, Masking::kSmithSeparable, Fresnel::kNone}}, Diffuse::kLambert};
   models.push_back(two);
+  for (const Fresnel coat : {Fresnel::kCoatLayered, Fresnel::kCoatRefracted}) {
+    models.push_back({{{Ndf::kGgx, Masking::kSmithSeparable, coat}, {Ndf::kGgxAnisotropic, Masking::kSmithHeight}},
+                      Diffuse::kLambert});
+    models.push_back({{{Ndf::kGgx, Masking::kSmithSeparable, coat}, {Ndf::kStudent}}, Diffuse::kNone});
+  }
   return models;
 }
 

@@ -59,6 +59,19 @@ TEST(Recipe, TomlRoundTrip) {
   EXPECT_EQ(ToToml(ParseRecipe(ToToml(metal), "m")), ToToml(metal));
 }
 
+// What the table leaves at its start is fitted where the recipe says so.
+TEST(Recipe, FreesWhatIsFixedByDefault) {
+  const char* const text =
+      "[[lobe]]\nndf = \"ggx\"\nfresnel = \"coat-layered\"\n[parameters]\ntau = { free = true, bounds = [0, 2] }\n";
+  const Recipe recipe = ParseRecipe(text, "r.toml"),
+               fixed = ParseRecipe("[[lobe]]\nndf = \"ggx\"\nfresnel = \"coat-layered\"\n", "r.toml");
+  EXPECT_TRUE(recipe.IsFree(6));
+  EXPECT_FALSE(fixed.IsFree(6));
+  EXPECT_TRUE(fixed.IsFree(5));  // the index
+  EXPECT_EQ(ToToml(ParseRecipe(ToToml(recipe), "r.toml")), ToToml(recipe));
+  EXPECT_TRUE(ParseRecipe(ToToml(recipe), "r.toml").IsFree(6));
+}
+
 TEST(Recipe, MetalsNeedAWavelengthAChannel) {
   const Recipe recipe = ParseRecipe("[[lobe]]\nfresnel = \"conductor\"\nmetal = \"Cu\"\n", "m");
   EXPECT_THROW(WithMetals(recipe, {}, 3), InputError);
@@ -128,6 +141,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "r.toml:3: bounds of 'alpha_x': the first must be below the second"},
         BadCase{"[[lobe]]\n[parameters]\nalpha_x = { fixed = nan }\n", "r.toml:3: 'fixed' must be a finite number"},
         BadCase{"[[lobe]]\nndf = \"ggx\"\n[parameters]\nalpha_y = { start = 0.1 }\n",
+                "r.toml:4: 'alpha_y' is not a free parameter of this ndf; it can only be fixed"},
+        BadCase{"diffuse = \"none\"\n[[lobe]]\nndf = \"ggx\"\nfresnel = \"coat-layered\"\n",
+                "r.toml:2: a coat lies over something: add a [[lobe]] or a diffuse part below it"},
+        BadCase{"[[lobe]]\nndf = \"ggx\"\nfresnel = \"coat-layered\"\n[parameters]\ntau = { start = 0.1 }\n",
+                "r.toml:5: 'tau' is not fitted unless it has free = true"},
+        BadCase{"[[lobe]]\nndf = \"ggx\"\nfresnel = \"coat-refracted\"\n[parameters]\nior = { shared = false }\n",
+                "r.toml:5: 'ior' of a coat is one for all channels, which pass it on one way"},
+        BadCase{"[[lobe]]\n[parameters]\nf0 = { fixed = 0.1, free = true }\n", "r.toml:3: 'f0' is both fixed and free"},
+        BadCase{"[[lobe]]\nndf = \"ggx\"\n[parameters]\nalpha_y = { free = true }\n",
                 "r.toml:4: 'alpha_y' is not a free parameter of this ndf; it can only be fixed"},
         BadCase{"theta_max_deg = 95\n[[lobe]]\n", "r.toml:1: theta_max_deg must lie in (0, 90]"},
         BadCase{"name = \"x\"\n", "r.toml:1: a recipe needs at least one [[lobe]], or [sel]"}));

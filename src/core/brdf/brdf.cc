@@ -1,5 +1,7 @@
 #include "lobefit/core/brdf/brdf.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "lobefit/core/brdf/lobe.h"
@@ -7,7 +9,7 @@
 namespace lobefit {
 
 Reflectance::Reflectance(const Model& model, const ParameterValues& values, std::size_t channels)
-    : model_(model), channels_(channels), albedo_(channels, 0.0) {
+    : model_(model), channels_(channels), albedo_(channels, 0.0), coat_(CoatOf(model)) {
   const std::vector<Parameter> parameters = Parameters(model);
   if (values.size() != parameters.size()) throw std::invalid_argument("Reflectance: wrong number of parameters");
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -30,38 +32,74 @@ Reflectance::Reflectance(const Model& model, const ParameterValues& values, std:
     const double parameters_of_channel[] = {values[values.size() - 2][c], values.back()[c]};
     directional_.emplace_back(model.diffuse, parameters_of_channel);
   }
+  if (HasCoat()) unit_diffuse_ = LambertBelowCoat(fresnel_[coat_][0][0], IsRefracted());
 }
 
 double Reflectance::DiffusePart(std::size_t channel, const Vec3& wi, const Vec3& wo, double facets) const {
   return directional_.empty() ? albedo_[channel] * facets : directional_[channel].Evaluate(wi, wo, nullptr);
 }
 
-double Reflectance::Channel(std::size_t channel, const double* specular, const double* cos_d, double diffuse) const {
+double Reflectance::Channel(std::size_t channel, const double* specular, const double* cos_d, double diffuse,
+                            const CoatPassage* passage) const {
+  const auto part = [&](std::size_t lobe) {
+    return specular[lobe] *
+           FresnelFactor(model_.lobes[lobe].fresnel, fresnel_[lobe][channel].data(), cos_d[lobe], nullptr);
+  };
   double f_r = diffuse;
   for (std::size_t lobe = 0; lobe < shapes_.size(); ++lobe) {
-    f_r += specular[lobe] *
-           FresnelFactor(model_.lobes[lobe].fresnel, fresnel_[lobe][channel].data(), cos_d[lobe], nullptr);
+    if (lobe != coat_) f_r += part(lobe);
   }
-  return f_r;
+  if (passage == nullptr) return f_r;
+  const double tau = fresnel_[coat_][channel][1];
+  return part(coat_) + passage->clear * std::exp(-tau * passage->path) * f_r;
 }
 
 void Reflectance::Evaluate(const Vec3& wi, const Vec3& wo, double* f_r) const {
-  const bool visible = wi.z > 0 && wo.z > 0;
+  if (!(wi.z > 0 && wo.z > 0)) {
+    std::fill_n(f_r, channels_, 0.0);
+    return;
+  }
+  CoatPassage passage = {};
+  if (HasCoat()) passage = PassThroughCoat(fresnel_[coat_][0][0], IsRefracted(), wi, wo);
   std::vector<double> specular(shapes_.size()), cos_d(shapes_.size());
-  for (std::size_t lobe = 0; visible && lobe < shapes_.size(); ++lobe)
-    specular[lobe] = SpecularLobe(wi, wo, model_.lobes[lobe], shapes_[lobe], &cos_d[lobe], nullptr);
-  const double facets = visible && facets_ ? facets_->Evaluate(wi, wo, nullptr) : kInvPi;
-  for (std::size_t c = 0; c < channels_; ++c)
-    f_r[c] = visible ? Channel(c, specular.data(), cos_d.data(), DiffusePart(c, wi, wo, facets)) : 0.0;
+  for (std::size_t lobe = 0; lobe < shapes_.size(); ++lobe) {
+    const bool below = HasCoat() && lobe != coat_;
+    specular[lobe] = SpecularLobe(below ? passage.inside_i : wi, below ? passage.inside_o : wo, model_.lobes[lobe],
+                                  shapes_[lobe], &cos_d[lobe], nullptr);
+  }
+  const double facets = facets_ ? facets_->Evaluate(wi, wo, nullptr) : unit_diffuse_;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    f_r[c] = Channel(c, specular.data(), cos_d.data(), DiffusePart(c, wi, wo, facets), HasCoat() ? &passage : nullptr);
+  }
 }
 
 void Reflectance::Evaluate(const DirectionArrays& directions, std::vector<std::vector<double>>* f_r) const {
   const std::size_t count = directions.count, lobes = shapes_.size();
+  std::vector<CoatPassage> passages;
+  std::vector<double> inside[6];
+  for (std::size_t i = 0; HasCoat() && i < count; ++i) {
+    passages.push_back(PassThroughCoat(fresnel_[coat_][0][0], IsRefracted(),
+                                       {directions.wi_x[i], directions.wi_y[i], directions.wi_z[i]},
+                                       {directions.wo_x[i], directions.wo_y[i], directions.wo_z[i]}));
+    const Vec3 &wi = passages[i].inside_i, &wo = passages[i].inside_o;
+    const double all[6] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
+    for (std::size_t k = 0; k < 6; ++k) inside[k].push_back(all[k]);
+  }
+  const DirectionArrays below = HasCoat() ? DirectionArrays{inside[0].data(),
+                                                            inside[1].data(),
+                                                            inside[2].data(),
+                                                            inside[3].data(),
+                                                            inside[4].data(),
+                                                            inside[5].data(),
+                                                            count}
+                                          : directions;
   std::vector<std::vector<double>> specular(lobes, std::vector<double>(count)),
       cos_d(lobes, std::vector<double>(count));
-  for (std::size_t lobe = 0; lobe < lobes; ++lobe)
-    SpecularLobe(directions, model_.lobes[lobe], shapes_[lobe], specular[lobe].data(), cos_d[lobe].data(), nullptr);
-  std::vector<double> facets(count, kInvPi);
+  for (std::size_t lobe = 0; lobe < lobes; ++lobe) {
+    SpecularLobe(lobe == coat_ ? directions : below, model_.lobes[lobe], shapes_[lobe], specular[lobe].data(),
+                 cos_d[lobe].data(), nullptr);
+  }
+  std::vector<double> facets(count, unit_diffuse_);
   if (facets_) facets_->Evaluate(directions, facets.data(), nullptr);
   f_r->assign(channels_, std::vector<double>(count));
   std::vector<double> s(lobes), d(lobes);
@@ -72,8 +110,9 @@ void Reflectance::Evaluate(const DirectionArrays& directions, std::vector<std::v
     }
     const Vec3 wi = {directions.wi_x[i], directions.wi_y[i], directions.wi_z[i]};
     const Vec3 wo = {directions.wo_x[i], directions.wo_y[i], directions.wo_z[i]};
+    const CoatPassage* passage = HasCoat() ? &passages[i] : nullptr;
     for (std::size_t c = 0; c < channels_; ++c)
-      (*f_r)[c][i] = Channel(c, s.data(), d.data(), DiffusePart(c, wi, wo, facets[i]));
+      (*f_r)[c][i] = Channel(c, s.data(), d.data(), DiffusePart(c, wi, wo, facets[i]), passage);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "lobefit/core/brdf/coat.h"
 #include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/diffuse_facets.h"
 #include "lobefit/core/brdf/lobe.h"
@@ -12,7 +13,8 @@
 
 namespace lobefit {
 
-// f_r = diffuse part + sum over lobes of F D G2 / (4 cos_theta_i cos_theta_o) [Walter eq 4-6], model.h.
+// f_r = diffuse part + sum over lobes of F D G2 / (4 cos_theta_i cos_theta_o) [Walter eq 4-6], model.h; below a coat as
+// coat.h has it.
 class Reflectance {
  public:
   // `values` in the order of Parameters(model), inside units (radians). Throws std::invalid_argument where their number
@@ -32,9 +34,12 @@ class Reflectance {
   const std::vector<LobeShape>& shapes() const { return shapes_; }
 
  private:
-  // `diffuse`: f_r of the diffuse part.
-  double Channel(std::size_t channel, const double* specular, const double* cos_d, double diffuse) const;
+  // `diffuse`: f_r of the diffuse part. `passage`: null without a coat.
+  double Channel(std::size_t channel, const double* specular, const double* cos_d, double diffuse,
+                 const CoatPassage* passage) const;
   // `facets`: of albedo 1, where there are some.
+  bool HasCoat() const { return coat_ < shapes_.size(); }
+  bool IsRefracted() const { return model_.lobes[coat_].fresnel == Fresnel::kCoatRefracted; }
   double DiffusePart(std::size_t channel, const Vec3& wi, const Vec3& wo, double facets) const;
 
   Model model_;
@@ -45,6 +50,8 @@ class Reflectance {
   std::vector<double> albedo_;                             // [channel]; zero without a diffuse part
   std::vector<DirectionalDiffuse> directional_;            // [channel]; empty where the kind is none of these
   std::shared_ptr<const DiffuseFacets> facets_;            // null: none
+  std::size_t coat_;                                       // CoatOf(model)
+  double unit_diffuse_ = kInvPi;                           // f_r of a Lambertian part of albedo 1
 };
 
 }  // namespace lobefit

@@ -21,33 +21,47 @@ Vec3 Refracted(const Vec3& u, double ior, Vec3* dior) {
   return inside;
 }
 
+CoatPassage PassThroughCoat(double ior, bool refracted, const Vec3& wi, const Vec3& wo) {
+  double dTi, dTo;
+  const double T_i = DielectricTransmittance(wi.z, ior, nullptr, &dTi);
+  const double T_o = DielectricTransmittance(wo.z, ior, nullptr, &dTo);
+  CoatPassage p = {T_i * T_o, 2, dTi / T_i + dTo / T_o, 0, wi, wo, {}, {}};
+  if (!refracted) return p;
+  p.clear /= ior * ior;
+  p.dlog_clear_dior -= 2.0 / ior;
+  p.inside_i = Refracted(wi, ior, &p.dinside_i_dior);
+  p.inside_o = Refracted(wo, ior, &p.dinside_o_dior);
+  const double zi = p.inside_i.z, zo = p.inside_o.z;
+  p.path = 1.0 / zi + 1.0 / zo;
+  p.dpath_dior = -p.dinside_i_dior.z / (zi * zi) - p.dinside_o_dior.z / (zo * zo);
+  return p;
+}
+
+double LambertBelowCoat(double ior, bool refracted, double* dior) {
+  double dF_ex;
+  const double enters = 1.0 - DielectricMeanReflectance(ior, &dF_ex);
+  const double value = (refracted ? ior * ior : 1.0) * kInvPi / enters;
+  if (dior != nullptr) *dior = value * (dF_ex / enters + (refracted ? 2.0 / ior : 0.0));
+  return value;
+}
+
 CoatFactors EvaluateCoat(const Coat& coat, const Vec3& wi, const Vec3& wo) {
   const SlopeNormalDistribution distribution({SlopeKind::kGgx, coat.alpha, coat.alpha, 0.0, 0.0, 0.0});
-  double by_shape[kSlopeParameters], cos_d, dF_dior, dTi, dTo;
+  double by_shape[kSlopeParameters], cos_d, dF_dior;
   const double specular = MicrofacetSpecular(distribution, {}, wo, wi, by_shape, &cos_d);
   const double F = FresnelDielectric(cos_d, coat.ior, nullptr, &dF_dior);
-  const double T_i = DielectricTransmittance(wi.z, coat.ior, nullptr, &dTi);
-  const double T_o = DielectricTransmittance(wo.z, coat.ior, nullptr, &dTo);
   CoatFactors f = {};
   f.lobe = specular * F;
   f.dlobe_dalpha = F * (by_shape[0] + by_shape[1]);
   f.dlobe_dior = specular * dF_dior;
-  const double dlog = dTi / T_i + dTo / T_o;
-  if (!coat.refracted) {
-    f.through = T_i * T_o * std::exp(-2.0 * coat.tau);
-    f.inside_i = wi;
-    f.inside_o = wo;
-    f.dthrough_dior = f.through * dlog;
-    f.dthrough_dtau = -2.0 * f.through;
-    return f;
-  }
-  f.inside_i = Refracted(wi, coat.ior, &f.dinside_i_dior);
-  f.inside_o = Refracted(wo, coat.ior, &f.dinside_o_dior);
-  const double zi = f.inside_i.z, zo = f.inside_o.z, path = 1.0 / zi + 1.0 / zo;
-  f.through = T_i * T_o / (coat.ior * coat.ior) * std::exp(-coat.tau * path);
-  const double dpath = -f.dinside_i_dior.z / (zi * zi) - f.dinside_o_dior.z / (zo * zo);
-  f.dthrough_dior = f.through * (dlog - 2.0 / coat.ior - coat.tau * dpath);
-  f.dthrough_dtau = -f.through * path;
+  const CoatPassage passage = PassThroughCoat(coat.ior, coat.refracted, wi, wo);
+  f.through = passage.clear * std::exp(-coat.tau * passage.path);
+  f.dthrough_dior = f.through * (passage.dlog_clear_dior - coat.tau * passage.dpath_dior);
+  f.dthrough_dtau = -f.through * passage.path;
+  f.inside_i = passage.inside_i;
+  f.inside_o = passage.inside_o;
+  f.dinside_i_dior = passage.dinside_i_dior;
+  f.dinside_o_dior = passage.dinside_o_dior;
   return f;
 }
 

@@ -21,6 +21,20 @@ inline Vec3 Mirrored(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 // u inside a medium of index n >= 1, and its derivative by n.
 Vec3 Refracted(const Vec3& u, double ior, Vec3* dior = nullptr);
 
+// A coat of index `ior` lets through f_base(inside_i, inside_o) clear exp(-tau path), all but what it absorbs by its
+// depth tau: clear = T_i T_o, and / n^2 where refracted; path = 2, or 1 / i'_z + 1 / o'_z.
+struct CoatPassage {
+  double clear, path;
+  double dlog_clear_dior, dpath_dior;
+  Vec3 inside_i, inside_o;
+  Vec3 dinside_i_dior, dinside_o_dior;
+};
+CoatPassage PassThroughCoat(double ior, bool refracted, const Vec3& wi, const Vec3& wo);
+
+// f_base of a Lambertian body below the coat with the apparent albedo 1 (diffuse.h), 1/sr: 1 / (pi (1 - F_ex)), and n^2
+// where refracted. With it a clear coat over such a body is `interfaced` and the lobe.
+double LambertBelowCoat(double ior, bool refracted, double* dior = nullptr);
+
 struct Coat {
   double alpha = 0.1;  // of its GGX lobe, about the normal
   double ior = 1.5;

@@ -214,6 +214,10 @@ double FresnelFactor(Fresnel fresnel, const double* parameters, double cos_d, do
       if (dF_dcos_d != nullptr) *dF_dcos_d = gradient.dc;
       return value;
     }
+    case Fresnel::kCoatLayered:
+    case Fresnel::kCoatRefracted:
+      if (dF != nullptr) dF[1] = 0;
+      [[fallthrough]];
     case Fresnel::kDielectric:
       return FresnelDielectric(cos_d, parameters[0], dF_dcos_d, dF);
     case Fresnel::kSchlickF82: {

@@ -51,7 +51,7 @@ std::unique_ptr<NormalDistribution> DistributionOf(const Lobe& lobe, const LobeS
 Shadowing ShadowingOf(Masking masking, const SlopeCoordinates& shape);
 
 // F at cos_d with the parameters of `fresnel` in the order of Parameters(model); dF: FresnelParameters(fresnel)
-// entries, and dF_dcos_d; null skips them. kNone: the scale itself.
+// entries, and dF_dcos_d; null skips them. kNone: the scale itself. Of a coat that of its surface.
 double FresnelFactor(Fresnel fresnel, const double* parameters, double cos_d, double* dF, double* dF_dcos_d = nullptr);
 
 }  // namespace lobefit

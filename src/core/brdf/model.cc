@@ -85,6 +85,7 @@ struct FresnelRow {
   const char* name;
   double low, high, start;
   const char* description;
+  bool free = true, shared = false;
 };
 // Indices beyond the ranges are not known of any metal between 0.3 and 12 um, or of any transparent solid.
 std::vector<FresnelRow> FresnelRows(Fresnel fresnel) {
@@ -106,6 +107,11 @@ std::vector<FresnelRow> FresnelRows(Fresnel fresnel) {
               {"F_3", 0, 1, 0, "near 58 degrees"},
               {"F_4", 0, 1, 0, "near 30 degrees"},
               {"F_5", 0, 1, 0, "reflectance at normal incidence"}};
+    case Fresnel::kCoatLayered:
+    case Fresnel::kCoatRefracted:
+      // The absorption is not free: without samples at grazing it is the reflectance of what lies below over again.
+      return {{"ior", 1, 3, 1.5, "refractive index of the coat", true, true},
+              {"tau", 0, 10, 0, "optical depth of the coat along the normal, one way", false, false}};
     case Fresnel::kNone:
       break;
   }
@@ -123,6 +129,23 @@ const char* DiffuseAlbedoText(Diffuse diffuse) {
     default:
       return "albedo of the Lambertian part, pi f_r";
   }
+}
+
+const char* WhyNoCoat(const Model& model) {
+  const std::size_t coat = CoatOf(model);
+  if (coat == model.lobes.size()) return "";
+  const Lobe& lobe = model.lobes[coat];
+  for (std::size_t l = 0; l < model.lobes.size(); ++l) {
+    if (l != coat && IsCoat(model.lobes[l].fresnel)) return "a model has one coat at most";
+  }
+  if (model.lobes.size() == 1 && model.diffuse == Diffuse::kNone)
+    return "a coat lies over something: add a [[lobe]] or a diffuse part below it";
+  if (IsTilted(lobe.ndf) || lobe.direction == LobeDirection::kRetro)
+    return "a coat's lobe lies about the mirror direction and the normal; use ndf ggx, ggx-anisotropic or another one "
+           "without a tilt";
+  if (model.diffuse != Diffuse::kLambert && model.diffuse != Diffuse::kNone)
+    return "below a coat the diffuse part is lambert or none: the coat is its interface";
+  return "";
 }
 
 bool IsSmith(Masking masking) { return masking <= Masking::kSmithHeightDirection; }
@@ -151,6 +174,7 @@ std::string WhyNotEvaluable(const Model& model) {
       return "metal = '" + lobe.metal + "' goes with fresnel = 'conductor' only";
     }
   }
+  if (const std::string why = WhyNoCoat(model); !why.empty()) return why;
   if (model.diffuse == Diffuse::kMicrofacet) {
     const Lobe& first = model.lobes.front();
     const NdfFamily family = FamilyOf(first.ndf);
@@ -166,10 +190,20 @@ std::string WhyNotEvaluable(const Model& model) {
   return "";
 }
 
+bool IsCoat(Fresnel fresnel) { return fresnel == Fresnel::kCoatLayered || fresnel == Fresnel::kCoatRefracted; }
+
+std::size_t CoatOf(const Model& model) {
+  std::size_t l = 0;
+  while (l < model.lobes.size() && !IsCoat(model.lobes[l].fresnel)) ++l;
+  return l;
+}
+
 std::size_t FresnelParameters(Fresnel fresnel) {
   switch (fresnel) {
     case Fresnel::kConductor:
     case Fresnel::kSchlickF82:
+    case Fresnel::kCoatLayered:
+    case Fresnel::kCoatRefracted:
       return 2;
     case Fresnel::kCurve:
       return 6;
@@ -239,8 +273,8 @@ std::vector<Parameter> Parameters(const Model& model) {
     }
     for (const FresnelRow& row : FresnelRows(lobe.fresnel)) {
       const std::string name = prefix + row.name;
-      parameters.push_back({name, name, "1", row.low, row.high, ParameterGroup::kFresnel, true, lobe.metal.empty(),
-                            row.description, row.start});
+      parameters.push_back({name, name, "1", row.low, row.high, ParameterGroup::kFresnel, true,
+                            row.free && lobe.metal.empty(), row.description, row.start, row.shared});
     }
   }
   if (model.diffuse == Diffuse::kInterfaced) {
@@ -306,6 +340,8 @@ const std::vector<Choice<Fresnel>>& FresnelChoices() {
       {Fresnel::kSchlickF82, "schlick-f82", "Schlick's with an edge tint, f0 and tint a channel"},
       {Fresnel::kCurve, "curve", "a free curve over the angle, six coefficients a channel"},
       {Fresnel::kNone, "none", "no Fresnel term, a free scale a channel"},
+      {Fresnel::kCoatLayered, "coat-layered", "dielectric surface of a coat over all other lobes and the diffuse part"},
+      {Fresnel::kCoatRefracted, "coat-refracted", "the same, refracting the directions below it"},
   };
   return choices;
 }

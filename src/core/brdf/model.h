@@ -63,6 +63,10 @@ enum class Fresnel {
   kSchlickF82,  // Schlick with an edge tint, f0 and tint a channel
   kCurve,       // cubic B-spline over cos_theta_d, six coefficients a channel
   kNone,        // a free scale a channel instead of F
+  // The lobe is the dielectric surface of a coat over all other lobes and the diffuse part (coat.h): ior common to the
+  // channels, tau a channel; seen through it straight or refracted.
+  kCoatLayered,
+  kCoatRefracted,
 };
 
 enum class Diffuse {
@@ -94,6 +98,10 @@ struct Model {
   Diffuse diffuse = Diffuse::kLambert;
 };
 
+// The lobe that is a coat over the others; none: model.lobes.size().
+bool IsCoat(Fresnel fresnel);
+std::size_t CoatOf(const Model& model);
+
 // Why this program does not evaluate the combination, in words that name what would work; empty: it does.
 std::string WhyNotEvaluable(const Model& model);
 
@@ -117,7 +125,8 @@ struct Parameter {
 };
 
 // The parameters in their fixed order: for each lobe alpha_x, alpha_y, theta_x, theta_y, theta_z and those of its
-// profile (gamma; or q1 .. qK), then those of its Fresnel term (f0; f0, tint; F_0 .. F_5; eta, k; ior; or scale); then
+// profile (gamma; or q1 .. qK), then those of its Fresnel term (f0; f0, tint; F_0 .. F_5; eta, k; ior; ior, tau; or
+// scale); then
 // the diffuse part's (interface_ior; or diffuse_roughness), last its albedo.
 std::vector<Parameter> Parameters(const Model& model);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "lobefit/core/brdf/coat.h"
 #include "lobefit/core/brdf/diffuse.h"
@@ -39,32 +40,74 @@ void ForFacets(const SlopeCoordinates& shape, const FacetGrid& grid, const Each&
   }
 }
 
-// Adds the albedo of the lobe to `albedo`, a channel, with F of parameters[channel].
+// The coat that lies over a lobe.
+struct Cover {
+  double ior;
+  bool refracted;
+  std::vector<double> tau;  // [channel]
+};
+
+// What leaves of the coat for wo inside it: false, it is reflected totally. d wo cos_o = n^2 d wo' cos_o'.
+bool Leaves(const Cover& cover, const Vec3& inside, Vec3* wo, double* spread) {
+  *wo = inside;
+  *spread = 1;
+  if (!cover.refracted) return true;
+  const double n = cover.ior, x = n * inside.x, y = n * inside.y, left = 1 - x * x - y * y;
+  if (left <= 0) return false;
+  *wo = {x, y, std::sqrt(left)};
+  *spread = n * n;
+  return true;
+}
+
+// Adds the albedo of the lobe to `albedo`, a channel, with F of parameters[channel]. `cover`: null, none.
 void AddLobe(const Lobe& lobe, const LobeShape& shape, Fresnel fresnel,
-             const std::vector<std::vector<double>>& parameters, const Vec3& wi, const FacetGrid& grid,
-             std::vector<double>* albedo) {
+             const std::vector<std::vector<double>>& parameters, const Cover* cover, const Vec3& from,
+             const FacetGrid& grid, std::vector<double>* albedo) {
+  const Vec3 wi = cover != nullptr && cover->refracted ? Refracted(from, cover->ior) : from;
   const Vec3 light = lobe.direction == LobeDirection::kRetro ? Mirrored(wi) : wi;
-  std::vector<double> in[3], out[3], weight;
+  std::vector<double> in[3], out[3], weight, path;
   ForFacets(shape.slope, grid, [&](const Vec3& m, double share) {
     // wo is the mirror image of wi (of a retro lobe's mirrored wi) at the facet.
     const double along = Dot(light, m);
     const Vec3 wo = Reflect(light, m);
     if (along <= 0 || wo.z <= 0) return;
-    const double from[] = {wi.x, wi.y, wi.z}, to[] = {wo.x, wo.y, wo.z};
-    for (std::size_t k = 0; k < 3; ++k) {
-      in[k].push_back(from[k]);
-      out[k].push_back(to[k]);
+    double through = 1;
+    if (cover != nullptr) {
+      Vec3 outside;
+      double spread;
+      if (!Leaves(*cover, wo, &outside, &spread)) return;
+      const CoatPassage passage = PassThroughCoat(cover->ior, cover->refracted, from, outside);
+      through = passage.clear * spread;
+      path.push_back(passage.path);
     }
-    weight.push_back(wo.z * 4 * along * share);  // d wo = 4 (wi.m) dm
+    const double arrives[] = {wi.x, wi.y, wi.z}, leaves[] = {wo.x, wo.y, wo.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      in[k].push_back(arrives[k]);
+      out[k].push_back(leaves[k]);
+    }
+    weight.push_back(through * wo.z * 4 * along * share);  // d wo = 4 (wi.m) dm
   });
   const std::size_t count = weight.size();
   std::vector<double> specular(count), cos_d(count);
   SpecularLobe({in[0].data(), in[1].data(), in[2].data(), out[0].data(), out[1].data(), out[2].data(), count}, lobe,
                shape, specular.data(), cos_d.data(), nullptr);
   for (std::size_t c = 0; c < albedo->size(); ++c) {
-    for (std::size_t i = 0; i < count; ++i)
-      (*albedo)[c] += weight[i] * specular[i] * FresnelFactor(fresnel, parameters[c].data(), cos_d[i], nullptr);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double kept = cover == nullptr ? 1 : std::exp(-cover->tau[c] * path[i]);
+      (*albedo)[c] += kept * weight[i] * specular[i] * FresnelFactor(fresnel, parameters[c].data(), cos_d[i], nullptr);
+    }
   }
+}
+
+// Of a Lambertian body of apparent albedo 1 below the coat: T(wi) int T(o) exp(-tau path) cos_o dwo / (pi (1 - F_ex)).
+double LambertAlbedo(const Cover& cover, double tau, const Vec3& wi) {
+  static const QuadratureRule rule = GaussLegendre(kDiffuseRings);
+  const double unit = LambertBelowCoat(cover.ior, cover.refracted);
+  return Integrate(rule, 0, 1, [&](double cos) {
+    const CoatPassage passage =
+        PassThroughCoat(cover.ior, cover.refracted, wi, {std::sqrt((1 - cos) * (1 + cos)), 0, cos});
+    return 2 * kPi * cos * unit * passage.clear * std::exp(-tau * passage.path);
+  });
 }
 
 double DiffuseFacetsAlbedo(const DiffuseFacets& facets, const Vec3& wi) {
@@ -94,6 +137,14 @@ std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues&
     const double unit = DiffuseFacetsAlbedo(DiffuseFacets(model.lobes[0], ShapeOf(model, values, 0).slope), wi);
     for (double& a : albedo) a *= unit;
   }
+  const std::size_t coat = CoatOf(model);
+  std::optional<Cover> cover;
+  if (coat < model.lobes.size()) {
+    const std::size_t first = FirstFresnel(model, coat);
+    cover = Cover{values[first][0], model.lobes[coat].fresnel == Fresnel::kCoatRefracted, values[first + 1]};
+    for (std::size_t c = 0; model.diffuse != Diffuse::kNone && c < channels; ++c)
+      albedo[c] *= LambertAlbedo(*cover, cover->tau[c], wi);
+  }
   for (std::size_t lobe = 0; lobe < model.lobes.size(); ++lobe) {
     const Fresnel fresnel = model.lobes[lobe].fresnel;
     std::vector<std::vector<double>> parameters(channels);
@@ -101,14 +152,15 @@ std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues&
       for (std::size_t k = 0; k < FresnelParameters(fresnel); ++k)
         parameters[c].push_back(values[FirstFresnel(model, lobe) + k][c]);
     }
-    AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), fresnel, parameters, wi, grid, &albedo);
+    AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), fresnel, parameters,
+            cover && lobe != coat ? &*cover : nullptr, wi, grid, &albedo);
   }
   return albedo;
 }
 
 double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& wi) {
   std::vector<double> albedo = {0};
-  AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), Fresnel::kNone, {{1.0}}, wi, {}, &albedo);
+  AddLobe(model.lobes[lobe], ShapeOf(model, values, lobe), Fresnel::kNone, {{1.0}}, nullptr, wi, {}, &albedo);
   return albedo[0];
 }
 

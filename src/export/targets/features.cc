@@ -20,6 +20,7 @@ std::vector<Carried> AllExactly(const FittedBrdf& fit, const std::string& note) 
   rows.push_back({Feature::kFresnel, Carries::kExactly, note});
   if (fit.HasDiffuse()) rows.push_back({Feature::kDiffuse, Carries::kExactly, note});
   if (fit.lobes().size() > 1) rows.push_back({Feature::kSecondLobe, Carries::kExactly, note});
+  if (CoatOf(fit.material().model) < fit.lobes().size()) rows.push_back({Feature::kCoat, Carries::kExactly, note});
   rows.push_back({Feature::kChannels, Carries::kExactly, note});
   return rows;
 }
@@ -67,6 +68,7 @@ std::vector<Carried> CarriesLobes(const FittedBrdf& fit, Masking masking, const 
   if (diffuse != Diffuse::kLambert && diffuse != Diffuse::kNone) {
     Mark(&rows, Feature::kDiffuse, Carries::kApproximately, "as a Lambertian part of the same albedo");
   }
+  Mark(&rows, Feature::kCoat, Carries::kApproximately, "as one more lobe, which dims nothing below it");
   MarkRetro(fit, &rows);
   return rows;
 }
@@ -106,6 +108,8 @@ std::vector<Carried> CarriesMetalBase(const FittedBrdf& fit, std::vector<Carried
   Mark(&rows, Feature::kDiffuse, Carries::kApproximately,
        "as the base under the specular layer, dimmed by it; of a metal only with the metal's colour");
   Mark(&rows, Feature::kSecondLobe, Carries::kNot, "only the lobe with the largest reflectance is there");
+  if (fit.lobes().size() > 1)
+    Mark(&rows, Feature::kCoat, Carries::kNot, "what lies below it, or the coat, is left out");
   return rows;
 }
 
@@ -129,7 +133,8 @@ Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes, b
     const bool kept = FamilyOf(lobe.choices.ndf) == NdfFamily::kGgx && tilted == IsTilted(lobe.choices.ndf) &&
                       lobe.anisotropic != IsRound(lobe.choices.ndf);
     const Fresnel fresnel = lobe.choices.fresnel;
-    const bool tinted = tint_and_roughness && fresnel != Fresnel::kSchlick && fresnel != Fresnel::kNone;
+    const bool tinted =
+        tint_and_roughness && fresnel != Fresnel::kSchlick && fresnel != Fresnel::kNone && !IsCoat(fresnel);
     model.lobes.push_back(
         {kept ? lobe.choices.ndf : ndf, masking, tinted ? Fresnel::kSchlickF82 : Fresnel::kSchlick, ""});
   }

@@ -25,12 +25,15 @@ std::string ShaderBody(const FittedBrdf& fit, const std::string& prefix);
 // The expressions that it is made of, with the names of the parameters as text. The lobe without its Fresnel term, by
 // the five `slopes` of lobefit_lobe:
 std::string ShaderLobe(const FittedBrdf& fit, std::size_t lobe, const std::string& prefix, const std::string& slopes);
-// Its Fresnel factor, of `cos_d` or a retro lobe's `cos_back`:
-std::string ShaderFresnel(const Lobe& lobe, const std::vector<std::string>& parameters);
-// The diffuse part; no parameter where there is none.
-std::string ShaderDiffuse(Diffuse diffuse, const std::vector<std::string>& parameters);
-// Statements for the mirrored light direction where a lobe needs it.
-std::string ShaderBackText(const FittedBrdf& fit);
+// Its Fresnel factor, of `cos_d`, a retro lobe's `cos_back` or a lobe's `cos_below` a coat:
+std::string ShaderFresnel(const FittedBrdf& fit, std::size_t lobe, const std::vector<std::string>& parameters);
+// The diffuse part; no parameter where there is none. `coat`: the parameters of the coat above it, if there is one.
+std::string ShaderDiffuse(const FittedBrdf& fit, const std::vector<std::string>& parameters,
+                          const std::vector<std::string>& coat);
+// What the coat lets through, by its parameters.
+std::string ShaderThrough(const FittedBrdf& fit, const std::vector<std::string>& coat);
+// Statements for directions below a coat and for the mirrored light direction, where a lobe needs them.
+std::string ShaderSetup(const FittedBrdf& fit, const std::string& coat_ior);
 
 std::string Replaced(std::string text, const std::string& from, const std::string& to);
 

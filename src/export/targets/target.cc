@@ -20,6 +20,8 @@ const char* NameOf(Feature feature) {
       return "Fresnel";
     case Feature::kDiffuse:
       return "diffuse";
+    case Feature::kCoat:
+      return "coat";
     case Feature::kSecondLobe:
       return "second lobe";
     case Feature::kChannels:

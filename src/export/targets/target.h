@@ -23,6 +23,7 @@ enum class Feature {
   kFresnel,
   kDiffuse,
   kSecondLobe,
+  kCoat,
   kChannels,
   kLobes,
   kInterpolation,

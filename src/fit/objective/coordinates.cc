@@ -163,7 +163,7 @@ void Layout::AddLinear(const Parameter& parameter, const ParameterRecipe& entry,
   for (std::size_t c = 0; c < channels_; ++c) {
     Linear linear;
     linear.start = entry.start.empty() ? parameter.start : entry.start[std::min(c, entry.start.size() - 1)];
-    if (!parameter.free && entry.fixed.empty()) {
+    if (!parameter.free && !entry.free && entry.fixed.empty()) {
       linear.value = parameter.start;
     } else if (!entry.fixed.empty()) {
       if (entry.fixed.size() != 1 && entry.fixed.size() != channels_) {

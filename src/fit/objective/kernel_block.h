@@ -13,6 +13,8 @@
 #include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/diffuse_facets.h"
 #include "lobefit/core/brdf/lobe.h"
+#include "lobefit/fit/objective/block_inputs.h"
+#include "lobefit/fit/objective/coat_stage.h"
 #include "lobefit/fit/objective/kernel.h"
 #include "lobefit/fit/objective/kernel_arrays.h"
 #include "lobefit/fit/objective/turned_axes.h"
@@ -74,6 +76,7 @@ class Block {
         {&inverse_cos_i_, model.offset.empty() ? 0 : 1},
         {&reading_slope_, model.offset.empty() || !gradient ? 0 : channels},
         {&columns_, gradient ? model.columns() : 0},
+        {&below_slope_, gradient && CoatOf(model) < lobes ? 1 : 0},
     };
     std::size_t blocks = 0;
     for (const auto& [array, count] : arrays) blocks += count;
@@ -94,7 +97,8 @@ class Block {
         probe_ = std::make_unique<Block>(moved_samples_, *straight_, false);
       }
     }
-    std::fill(diffuse_.begin(), diffuse_.end(), kInvPi);
+    if (const std::size_t coat = CoatOf(model); coat < lobes) coat_.emplace(model, coat, gradient);
+    std::fill(diffuse_.begin(), diffuse_.end(), coat_ ? coat_->lambert() : kInvPi);
     std::fill(ones_.begin(), ones_.end(), 1.0);
     if (model.diffuse_kind == Diffuse::kMicrofacet && !model.diffuse.empty())
       facets_.emplace(model.lobes[0].kind, model.lobes[0].shape.slope);
@@ -118,7 +122,9 @@ class Block {
       MoveDirections(begin, model_.alignment.angles);
       for (std::size_t k = 0; k < 6; ++k) *fields[k] = moved_.data() + k * kBlock;
     }
-    for (std::size_t l = 0; l < model_.lobes.size(); ++l) EvaluateLobe(l, directions);
+    const DirectionArrays below = coat_ ? coat_->Enter(directions) : directions;
+    for (std::size_t l = 0; l < model_.lobes.size(); ++l)
+      EvaluateLobe(l, IsCoat(model_.lobes[l].kind.fresnel) ? directions : below);
     for (std::size_t c = 0; c < directional_.size(); ++c) EvaluateDiffuse(c, directions);
     if (facets_) {
       facets_->Evaluate(directions, diffuse_.data(), gradient_ ? gradients_.data() : nullptr);
@@ -133,10 +139,17 @@ class Block {
       } else if (!model_.diffuse.empty()) {
         arrays::AddScaled(diffuse_.data(), model_.diffuse[c], padded_, f);
       }
-      for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
-        const Factor factor = EvaluateFresnel(l, c);
-        arrays::AddFactor(specular_.data() + l * kBlock, factor.constant, factor.slope, factor.array, padded_, f);
-      }
+      const auto add_lobes = [&](bool coat) {
+        for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
+          if (IsCoat(model_.lobes[l].kind.fresnel) != coat) continue;
+          const Factor factor = EvaluateFresnel(l, c);
+          arrays::AddFactor(specular_.data() + l * kBlock, factor.constant, factor.slope, factor.array, padded_, f);
+        }
+      };
+      add_lobes(false);
+      if (!coat_) continue;
+      coat_->Cover(c, padded_, f);
+      add_lobes(true);
     }
     if (model_.gains) ApplyGains(begin);
     if (!model_.offset.empty()) AddOffset();
@@ -176,22 +189,28 @@ class Block {
 
   // Columns of one channel, kBlock apart; the last is the residual.
   const double* Columns(std::size_t c) {
-    const double* slope = slope_.data() + c * kBlock;
+    const double* const outside = slope_.data() + c * kBlock;
+    // By what lies below a coat.
+    if (coat_) arrays::Multiply(outside, coat_->through(c), padded_, below_slope_.data());
+    const double* const slope = coat_ ? below_slope_.data() : outside;
+    const auto slope_of = [&](std::size_t l) { return IsCoat(model_.lobes[l].kind.fresnel) ? outside : slope; };
     double* to = columns_.data();
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
       const bool facets = facets_ && l == 0;
       const Factor factor = FactorOf(l, c);
-      arrays::ShapeColumn(slope, factor.constant, factor.slope, factor.array, contracted(l),
+      arrays::ShapeColumn(slope_of(l), factor.constant, factor.slope, factor.array, contracted(l),
                           facets ? model_.diffuse[c] : 0.0, facets ? diffuse_contracted() : nullptr,
                           model_.lobes[l].columns, padded_, kBlock, to);
-      if (model_.lobes[l].mean != nullptr) AddArgumentColumns(l, c, to);
+      if (model_.lobes[l].mean != nullptr) AddArgumentColumns(l, c, slope_of(l), to);
       to += model_.lobes[l].columns * kBlock;
     }
     for (std::size_t k = 0; k < model_.alignment.angles.size(); ++k, to += kBlock)
-      arrays::Multiply(slope, by_angle_.data() + (k * model_.channels + c) * kBlock, padded_, to);
+      arrays::Multiply(outside, by_angle_.data() + (k * model_.channels + c) * kBlock, padded_, to);
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
       for (std::size_t k = 0; k < FresnelParameters(model_.lobes[l].kind.fresnel); ++k, to += kBlock) {
-        arrays::Product(slope, specular_.data() + l * kBlock, FactorGradient(l, k, c), padded_, to);
+        arrays::Product(slope_of(l), specular_.data() + l * kBlock, FactorGradient(l, k, c), padded_, to);
+        if (!IsCoat(model_.lobes[l].kind.fresnel)) continue;
+        arrays::AddFactor(outside, 0, 1, coat_->gradient(c, k), padded_, to);
       }
     }
     for (std::size_t k = 0; k < (directional_.empty() ? 0 : DiffuseParameters(model_.diffuse_kind)); ++k, to += kBlock)
@@ -202,7 +221,7 @@ class Block {
     }
     if (!model_.offset.empty()) {
       // By the reading, which a gain does not scale.
-      const double* by_reading = model_.gains ? reading_slope_.data() + c * kBlock : slope;
+      const double* by_reading = model_.gains ? reading_slope_.data() + c * kBlock : outside;
       arrays::Multiply(by_reading, inverse_cos_i_.data(), padded_, to);
       to += kBlock;
     }
@@ -326,16 +345,15 @@ class Block {
   }
 
   // The shape moves the Fresnel factor of a mean too: to[k] += slope specular dF/d(argument) d(argument)/d(shape k).
-  void AddArgumentColumns(std::size_t l, std::size_t c, double* to) {
+  void AddArgumentColumns(std::size_t l, std::size_t c, const double* slope, double* to) {
     const KernelLobe& lobe = model_.lobes[l];
     const bool is_linear = IsLinear(lobe);
     if (lobe.kind.fresnel == Fresnel::kNone) return;
     const double* by_argument =
         is_linear ? nullptr : factor_by_argument_.data() + (c * model_.lobes.size() + l) * kBlock;
     for (std::size_t k = 0; k < lobe.columns; ++k) {
-      arrays::AddArgumentColumn(slope_.data() + c * kBlock, specular_.data() + l * kBlock,
-                                is_linear ? LinearFactor(l, c).slope : 1.0, by_argument,
-                                argument_contracted(l) + k * kBlock, padded_, to + k * kBlock);
+      arrays::AddArgumentColumn(slope, specular_.data() + l * kBlock, is_linear ? LinearFactor(l, c).slope : 1.0,
+                                by_argument, argument_contracted(l) + k * kBlock, padded_, to + k * kBlock);
     }
   }
 
@@ -439,29 +457,14 @@ class Block {
 
   // Square roots of the weights of this block, 0 for pads; null where all are 1.
   const double* SqrtWeight(std::size_t begin) {
-    const bool weighted =
-        samples_.weight != nullptr || samples_.solid_angle != nullptr || samples_.sin_i || samples_.sin_o;
-    if (!weighted && padded_ == count_) return nullptr;
-    std::fill_n(sqrt_weight_.data(), count_, 1.0);
-    std::fill(sqrt_weight_.begin() + static_cast<std::ptrdiff_t>(count_), sqrt_weight_.end(), 0.0);
-    for (const double* factor : {samples_.weight, samples_.solid_angle}) {
-      for (std::size_t i = 0; factor != nullptr && i < count_; ++i) sqrt_weight_[i] *= factor[begin + i];
-    }
-    if (samples_.sin_i) arrays::TimesSine(cos_i_, padded_, sqrt_weight_.data());
-    if (samples_.sin_o) {
-      const double* cos_o = Padded(samples_.direction[5] + begin, 0.0, &cos_o_pad_);
-      arrays::TimesSine(cos_o, padded_, sqrt_weight_.data());
-    }
-    if (weighted) arrays::FinishWeight(samples_.weight_scale, padded_, sqrt_weight_.data());
+    if (!HasWeights(samples_) && padded_ == count_) return nullptr;
+    const double* cos_o = samples_.sin_o ? Padded(samples_.direction[5] + begin, 0.0, &cos_o_pad_) : nullptr;
+    WriteWeightRoots(samples_, begin, count_, padded_, cos_i_, cos_o, sqrt_weight_);
     return sqrt_weight_.data();
   }
 
-  // An input array of this block: in place where the block is full, else a copy with `pad` behind it.
   const double* Padded(const double* from, double pad, std::vector<double>* copy) const {
-    if (padded_ == count_) return from;
-    copy->assign(from, from + count_);
-    copy->resize(padded_, pad);
-    return copy->data();
+    return PaddedArray(from, count_, padded_, pad, copy);
   }
 
   const KernelSamples& samples_;
@@ -470,6 +473,7 @@ class Block {
   std::size_t count_ = 0, padded_ = 0;
   const double* cos_i_ = nullptr;
   std::optional<DiffuseFacets> facets_;
+  std::optional<CoatStage> coat_;
   std::vector<DirectionalDiffuse> directional_;  // [channel]
   std::size_t shape_size_ = kEllipseParameters;  // most of a lobe
   std::size_t contracted_size_ = 0;              // columns of all lobes' shapes
@@ -482,7 +486,8 @@ class Block {
   std::span<double> specular_, gradients_, contracted_, cos_d_, p5_, one_minus_p5_, ones_, factor_, factor_gradient_,
       curve_basis_, interfaced_, diffuse_, diffuse_gradient_;
   std::span<double> argument_gradients_, argument_contracted_, factor_by_argument_;
-  std::span<double> f_, residual_, slope_, columns_, sqrt_weight_, gain_, gain_column_, inverse_cos_i_, reading_slope_;
+  std::span<double> f_, residual_, slope_, columns_, sqrt_weight_, gain_, gain_column_, inverse_cos_i_, reading_slope_,
+      below_slope_;
   // Of the alignment: directions in the sample's frame, derivatives of f_r by its angles [angle][channel], and the
   // model without instrument that gives them.
   std::span<double> moved_, by_angle_;

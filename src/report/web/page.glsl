@@ -8,8 +8,10 @@ uniform int mode;            // 0: sphere of the fit, 1: measured sphere, 2: val
 uniform int lobes;
 uniform int channels;
 uniform vec4 shape[8];       // mean slope x, y; a, b of the Cholesky factor
-uniform vec4 kind[8];        // c; family; masking; Fresnel: 0 Schlick, 1 conductor, 2 dielectric, 3 scale, 4 tinted, 5 curve
+uniform vec4 kind[8];        // c; family; masking; Fresnel: 0 Schlick, 1 conductor, 2 dielectric, 3 scale, 4 tinted, 5 curve,
+                             // 6 and 7 the surface of a coat, layered and refracted
 uniform vec4 radial[8];      // 0 or the number of nodes of the ratio; pieces of the excess, 0 for Student's; gamma; 1: retro
+uniform int coat;            // the lobe that is a coat over the others; -1: none
 uniform int diffuseKind;     // 0: none, 1: Lambert, 2: facets, 3: interfaced, 4: Oren-Nayar
 // Rows 2 l and 2 l + 1, column c: parameters of lobe l's Fresnel term in channel c; rows from 2 `lobes`: diffuse albedo,
 // then red, green, blue of the channel; and the diffuse part's index or roughness.
@@ -83,26 +85,32 @@ float lobePart[8];
 void prepare(vec3 wi, vec3 wo) {
   toLight = wi;
   toViewer = wo;
-  vec3 h = normalize(wi + wo);
+  vec3 h = normalize(wi + wo), insideI = wi, insideO = wo;
+  if (coat >= 0 && kind[coat].w == 7.0) {
+    float ior = texelFetch(parameters, ivec2(0, 2 * coat), 0).x;
+    insideI = lobefit_refracted(wi, ior);
+    insideO = lobefit_refracted(wo, ior);
+  }
   for (int k = 0; k < 8; ++k) {
     if (k >= lobes) break;
+    vec3 ki = k == coat ? wi : insideI, ko = k == coat ? wo : insideO;
     vec4 s = shape[k];
     float c = kind[k].x, excess = 0.0, ratioI = 1.0, ratioO = 1.0;
-    vec3 i = radial[k].w > 0.0 ? vec3(-wi.xy, wi.z) : wi, own = normalize(i + wo);
+    vec3 i = radial[k].w > 0.0 ? vec3(-ki.xy, ki.z) : ki, own = normalize(i + ko);
     if (radial[k].x > 0.0) {
       excess = excessOf(k, lobefit_u(own, s.x, s.y, s.z, s.w, c));
       ratioI = ratioOf(k, lobefit_w(i, s.x, s.y, s.z, s.w, c));
-      ratioO = ratioOf(k, lobefit_w(wo, s.x, s.y, s.z, s.w, c));
+      ratioO = ratioOf(k, lobefit_w(ko, s.x, s.y, s.z, s.w, c));
     }
     cosD[k] = dot(i, own);
-    lobePart[k] = lobefit_lobe(i, wo, own, s.x, s.y, s.z, s.w, c, int(kind[k].y), int(kind[k].z), excess, ratioI, ratioO);
+    lobePart[k] = lobefit_lobe(i, ko, own, s.x, s.y, s.z, s.w, c, int(kind[k].y), int(kind[k].z), excess, ratioI, ratioO);
   }
   diffusePart = diffuseKind == 1 ? 1.0 / PI : diffuseKind == 2 ? facets(wi, wo, h) : 0.0;
 }
 float fresnel(int kindOf, float c, vec4 p, vec2 q) {
   if (kindOf == 0) return p.x + (1.0 - p.x) * lobefit_schlick(c);
   if (kindOf == 1) return lobefit_conductor(c, p.x, p.y);
-  if (kindOf == 2) return lobefit_dielectric(c, p.x);
+  if (kindOf == 2 || kindOf > 5) return lobefit_dielectric(c, p.x);
   if (kindOf == 4) return lobefit_schlick_f82(c, p.x, p.y);
   if (kindOf == 5) return lobefit_curve(c, p.x, p.y, p.z, p.w, q.x, q.y);
   return p.x;
@@ -113,12 +121,17 @@ float channelValue(int channel) {
     float own = texelFetch(parameters, ivec2(channel, 2 * lobes + 1), 0).x;
     f = diffuseKind == 3 ? lobefit_interfaced(toLight, toViewer, own, albedo) : lobefit_oren_nayar(toLight, toViewer, own, albedo);
   }
+  vec4 layer = coat < 0 ? vec4(0.0) : texelFetch(parameters, ivec2(channel, 2 * coat), 0);
+  float bends = coat >= 0 && kind[coat].w == 7.0 ? 1.0 : 0.0;
+  if (coat >= 0) f *= PI * lobefit_below(bends, layer.x);
   for (int k = 0; k < 8; ++k) {
     if (k >= lobes) break;
+    if (k == coat) continue;
     f += lobePart[k] * fresnel(int(kind[k].w), cosD[k], texelFetch(parameters, ivec2(channel, 2 * k), 0),
                                texelFetch(parameters, ivec2(channel, 2 * k + 1), 0).xy);
   }
-  return f;
+  if (coat < 0) return f;
+  return f * lobefit_through(toLight, toViewer, bends, layer.x, layer.y) + lobePart[coat] * fresnel(6, cosD[coat], layer, vec2(0.0));
 }
 vec3 fitted(vec3 wi, vec3 wo) {
   prepare(wi, wo);

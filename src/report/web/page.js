@@ -310,7 +310,7 @@ function startGl() {
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
   gl.useProgram(program);
-  for (const name of ['mode', 'lobes', 'channels', 'shape', 'kind', 'radial', 'diffuseKind', 'parameters', 'profiles', 'pairs', 'light', 'exposure', 'texel', 'table', 'tableSize', 'edge']) {
+  for (const name of ['mode', 'lobes', 'channels', 'shape', 'kind', 'radial', 'coat', 'diffuseKind', 'parameters', 'profiles', 'pairs', 'light', 'exposure', 'texel', 'table', 'tableSize', 'edge']) {
     uniforms[name] = gl.getUniformLocation(program, name);
   }
   gl.bindTexture(gl.TEXTURE_3D, gl.createTexture());
@@ -366,7 +366,7 @@ function evaluate(pairs) {
   return data.channels.map((_, c) => pairs.map((_, i) => view.getFloat32(4 * (c * n + i), true)));
 }
 const MASKINGS = ['smith-separable', 'smith-unclamped', 'smith-height', 'smith-height-direction', 'v-cavity', 'implicit', 'schlick-smith', 'kelemen'];
-const FRESNELS = ['schlick', 'conductor', 'dielectric', 'none', 'schlick-f82', 'curve'];
+const FRESNELS = ['schlick', 'conductor', 'dielectric', 'none', 'schlick-f82', 'curve', 'coat-layered', 'coat-refracted'];
 // The tables of the profiles belong to their numbers: made again when one moved.
 let profileKey = '', profiles = [];
 function setProfiles() {
@@ -406,6 +406,7 @@ function setModel() {
   upload(1, channels, rows, texels);
   gl.uniform1i(uniforms.lobes, lobes.length);
   gl.uniform1i(uniforms.channels, channels);
+  gl.uniform1i(uniforms.coat, lobes.findIndex((lobe) => lobe.fresnel.startsWith('coat')));
   gl.uniform1i(uniforms.diffuseKind, data.model.diffuse);
   if (shape.length) { gl.uniform4fv(uniforms.shape, shape); gl.uniform4fv(uniforms.kind, kind); gl.uniform4fv(uniforms.radial, radial); }
   gl.uniform3fv(uniforms.light, light);

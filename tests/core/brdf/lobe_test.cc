@@ -230,10 +230,11 @@ TEST(DistributionOf, BeckmannWithoutTiltHasItsOwnAlphas) {
 
 TEST(FresnelFactorTest, ValuesAndDerivatives) {
   const double conductor[] = {0.2, 3.9}, dielectric[] = {1.5}, f0[] = {0.04}, scale[] = {2.5}, f82[] = {0.6, 0.8},
-               curve[] = {0.9, 0.5, 0.2, 0.1, 0.15, 0.3};
+               curve[] = {0.9, 0.5, 0.2, 0.1, 0.15, 0.3}, coat[] = {1.5, 0.2};
   const std::pair<Fresnel, const double*> cases[] = {
       {Fresnel::kConductor, conductor}, {Fresnel::kDielectric, dielectric}, {Fresnel::kSchlick, f0},
-      {Fresnel::kSchlickF82, f82},      {Fresnel::kCurve, curve},           {Fresnel::kNone, scale}};
+      {Fresnel::kSchlickF82, f82},      {Fresnel::kCurve, curve},           {Fresnel::kNone, scale},
+      {Fresnel::kCoatLayered, coat},    {Fresnel::kCoatRefracted, coat}};
   for (const auto& [fresnel, parameters] : cases) {
     for (const double cos_d : {0.05, 0.4, 0.9, 1.0}) {
       double dF[kMaxFresnelParameters];
@@ -306,6 +307,21 @@ TEST(WhyNotEvaluable, NamesWhatWouldWork) {
   EXPECT_NE(WhyNotEvaluable({{{Ndf::kGgx, Masking::kKelemen}}, Diffuse::kMicrofacet}).find("Smith"), std::string::npos);
   EXPECT_NE(WhyNotEvaluable({{{Ndf::kKagiwadaKalaba}}, Diffuse::kMicrofacet}).find("Beckmann"), std::string::npos);
   EXPECT_EQ(WhyNotEvaluable({{{Ndf::kKagiwadaKalaba}}, Diffuse::kLambert}), "");
+}
+
+TEST(WhyNotEvaluable, ACoatLiesOverSomethingOnceAndAboutTheNormal) {
+  const Lobe coat = {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered};
+  EXPECT_EQ(WhyNotEvaluable({{coat}, Diffuse::kLambert}), "");
+  EXPECT_EQ(WhyNotEvaluable({{{Ndf::kEllipsoid}, coat}, Diffuse::kNone}), "");
+  EXPECT_NE(WhyNotEvaluable({{coat}, Diffuse::kNone}).find("over something"), std::string::npos);
+  EXPECT_NE(WhyNotEvaluable({{coat, coat}, Diffuse::kLambert}).find("one coat"), std::string::npos);
+  EXPECT_NE(WhyNotEvaluable({{coat}, Diffuse::kOrenNayar}).find("lambert or none"), std::string::npos);
+  Lobe wrong = coat;
+  wrong.ndf = Ndf::kEllipsoid;
+  EXPECT_NE(WhyNotEvaluable({{wrong}, Diffuse::kLambert}).find("ggx-anisotropic"), std::string::npos);
+  wrong = coat;
+  wrong.direction = LobeDirection::kRetro;
+  EXPECT_NE(WhyNotEvaluable({{wrong}, Diffuse::kLambert}).find("mirror direction"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "lobefit/fit/objective/kernel.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/jet_model.h"
@@ -7,6 +8,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include "lobefit/core/brdf/brdf.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/solve.h"
@@ -118,6 +120,48 @@ TEST(Kernel, LossesWeighASampleOverItsChannels) {
                                  problem.Sum(layout.ToKernel(down.data()), false, &pool).sum_rho) /
                                 (4 * step);
       EXPECT_NEAR(gradient(static_cast<Eigen::Index>(k)), difference, 1e-5 * gradient.norm()) << k;
+    }
+  }
+}
+
+// Of a coat over a lobe and a Lambertian part: the derivatives of the cost by everything, the coat's index and
+// absorption too.
+TEST(Kernel, CoatsMoveAllThatLiesBelow) {
+  ThreadPool pool(1);
+  const Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20), StandardLayout(), 0.2, 5);
+  for (const Fresnel coat : {Fresnel::kCoatLayered, Fresnel::kCoatRefracted}) {
+    Recipe recipe =
+        DefaultRecipe({{{Ndf::kEllipsoid}, {Ndf::kGgx, Masking::kSmithSeparable, coat}}, Diffuse::kLambert}, "coated");
+    recipe.parameters[FirstFresnel(recipe.model, 1) + 1].free = true;  // tau
+    const Layout layout(recipe, measurement.channels.names);
+    ASSERT_EQ(layout.size(), 5U + 1U + 3U + 1U + 3U + 3U);
+    const Problem problem(measurement.samples, recipe);
+    std::vector<double> u = layout.FromShapes({{0.33, 0.14, 0.05, 0.01, 0.3}, {0.08, 0.08, 0, 0, 0}});
+    const double linear[] = {0.4, 0.5, 0.6, 1.6, 0.1, 0.2, 0.3, 0.3, 0.2, 0.1};
+    std::copy(std::begin(linear), std::end(linear), u.begin() + 6);
+    Eigen::MatrixXd hessian;
+    Eigen::VectorXd gradient;
+    Linearise(problem, layout, u.data(), &pool, &hessian, &gradient);
+    for (std::size_t k = 0; k < u.size(); ++k) {
+      const double step = 1e-6;
+      std::vector<double> up = u, down = u;
+      up[k] += step;
+      down[k] -= step;
+      const double difference = (problem.Sum(layout.ToKernel(up.data()), false, &pool).sum_rho -
+                                 problem.Sum(layout.ToKernel(down.data()), false, &pool).sum_rho) /
+                                (4 * step);
+      EXPECT_NEAR(gradient(static_cast<Eigen::Index>(k)), difference, 1e-7 * gradient.norm())
+          << layout.coordinates()[k].name;
+      EXPECT_GT(std::fabs(difference), 1e-4 * gradient.norm()) << layout.coordinates()[k].name;
+    }
+    // The stream of the fit and the evaluation of reports are one model.
+    std::vector<std::vector<double>> values;
+    ModelValues(problem.kernel_samples(), layout.ToKernel(u.data()), 0, problem.size(), &values);
+    const Reflectance reflectance(recipe.model, layout.Report(u.data()), 3);
+    for (std::size_t i = 0; i < problem.size(); i += 17) {
+      double f[3];
+      reflectance.Evaluate(measurement.samples.wi(i), measurement.samples.wo(i), f);
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(values[c][i], f[c], 1e-11 * f[c]);
     }
   }
 }

@@ -160,6 +160,29 @@ Material ProfileStudentAndRetro(std::size_t channels) {
                    channels);
 }
 
+// A coat that refracts, over a tilted lobe and a Lambertian part.
+Material Coated(std::size_t channels) {
+  Model model;
+  model.lobes = {{Ndf::kEllipsoid, Masking::kSmithSeparable, Fresnel::kSchlick},
+                 {Ndf::kGgx, Masking::kSmithHeight, Fresnel::kCoatRefracted}};
+  return WithModel(model,
+                   {{0.4},
+                    {0.2},
+                    {0.05},
+                    {-0.08},
+                    {0.4},
+                    {0.9, 0.6, 0.3},
+                    {0.15},
+                    {0.15},
+                    {0},
+                    {0},
+                    {0},
+                    {1.6},
+                    {0.1, 0.3},
+                    {0.5, 0.3, 0.9}},
+                   channels);
+}
+
 Material StudentOverOrenNayar(std::size_t channels) {
   Model model;
   model.lobes = {{Ndf::kStudent, Masking::kSmithHeightDirection, Fresnel::kSchlick}};
@@ -273,7 +296,8 @@ INSTANTIATE_TEST_SUITE_P(
                     PageCase{"two_beckmann_lobes_over_facets", 3, false, false, true, TwoBeckmannLobesOverFacets},
                     PageCase{"spectral_conductor_over_facets", 5, false, false, false, TiltedConductorOverFacets},
                     PageCase{"profile_student_and_retro", 3, false, false, true, ProfileStudentAndRetro},
-                    PageCase{"spectral_student_over_oren_nayar", 4, false, false, true, StudentOverOrenNayar}),
+                    PageCase{"spectral_student_over_oren_nayar", 4, false, false, true, StudentOverOrenNayar},
+                    PageCase{"coated", 3, false, false, true, Coated}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
 class HostilePage : public HtmlPage {};

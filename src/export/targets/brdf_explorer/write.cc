@@ -86,23 +86,31 @@ std::string BrdfExplorerText(const FittedBrdf& fit, const std::vector<std::strin
   text += "vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y) {\n";
   text += "  vec3 wi = vec3(dot(L, X), dot(L, Y), dot(L, N)), wo = vec3(dot(V, X), dot(V, Y), dot(V, N));\n";
   text += "  if (wi.z <= 0.0 || wo.z <= 0.0) { return vec3(0.0); }\n";
-  text += kShaderHalfText + ShaderBackText(fit) + "  float slope_x, slope_y, a, b, c;\n";
   const Model& model = fit.material().model;
+  const std::size_t coat = CoatOf(model);
+  const auto names_of = [&](std::size_t first, std::size_t count, const char* channel) {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < count; ++k) names.push_back(Identifier(parameters[first + k].json_name) + channel);
+    return names;
+  };
+  const auto coat_names = [&](const char* channel) {
+    return coat < model.lobes.size() ? names_of(FirstFresnel(model, coat), 2, channel) : std::vector<std::string>{};
+  };
+  text += kShaderHalfText + ShaderSetup(fit, coat < model.lobes.size() ? coat_names(".r")[0] : "") +
+          "  float slope_x, slope_y, a, b, c;\n";
   // The names of `count` sliders from `first` on, in each of the three channels.
   const auto colour = [&](std::size_t first, std::size_t count, const auto& expression) {
     std::vector<std::string> channels;
-    for (const char* channel : {".r", ".g", ".b"}) {
-      std::vector<std::string> names;
-      for (std::size_t k = 0; k < count; ++k) names.push_back(Identifier(parameters[first + k].json_name) + channel);
-      channels.push_back(expression(names));
-    }
+    for (const char* channel : {".r", ".g", ".b"})
+      channels.push_back(expression(names_of(first, count, channel), coat_names(channel)));
     return fmt::format("vec3({})", fmt::join(channels, ",\n              "));
   };
-  text +=
-      fmt::format("  vec3 f_r = {};\n",
-                  colour(FirstParameter(model, model.lobes.size()), DiffuseParameters(model.diffuse),
-                         [&](const std::vector<std::string>& names) { return ShaderDiffuse(model.diffuse, names); }));
-  for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
+  text += fmt::format("  vec3 f_r = {};\n",
+                      colour(FirstParameter(model, model.lobes.size()), DiffuseParameters(model.diffuse),
+                             [&](const std::vector<std::string>& names, const std::vector<std::string>& of_coat) {
+                               return ShaderDiffuse(fit, names, of_coat);
+                             }));
+  const auto add_lobe = [&](std::size_t l) {
     const std::string prefix = l == 0 ? "" : fmt::format("lobe{}_", l + 1);
     const Lobe& lobe = fit.lobes()[l].choices;
     // Where the distribution ties alpha_y, one slider moves both.
@@ -111,7 +119,20 @@ std::string BrdfExplorerText(const FittedBrdf& fit, const std::vector<std::strin
         "c);\n  f_r += {2} *\n         {3};\n",
         prefix, IsRound(lobe.ndf) ? "alpha_x" : "alpha_y", ShaderLobe(fit, l, "lobefit_", "slope_x, slope_y, a, b, c"),
         colour(FirstFresnel(model, l), FresnelParameters(lobe.fresnel),
-               [&](const std::vector<std::string>& names) { return ShaderFresnel(lobe, names); }));
+               [&](const std::vector<std::string>& names, const std::vector<std::string>&) {
+                 return ShaderFresnel(fit, l, names);
+               }));
+  };
+  for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
+    if (l != coat) add_lobe(l);
+  }
+  if (coat < fit.lobes().size()) {
+    text += fmt::format("  f_r *= {};\n",
+                        colour(FirstFresnel(model, coat), 2,
+                               [&](const std::vector<std::string>& names, const std::vector<std::string>&) {
+                                 return ShaderThrough(fit, names);
+                               }));
+    add_lobe(coat);
   }
   return text + "  return f_r;\n}\n::end shader\n";
 }
