@@ -248,6 +248,19 @@ Ndf InShape(Ndf like, Ndf round, Ndf tilted, Ndf anisotropic, Ndf free) {
   return IsTilted(like) ? free : anisotropic;
 }
 
+std::string NameOfLobes(const std::vector<Lobe>& lobes) {
+  std::string name;
+  bool curve = false, coat = false;
+  for (const Lobe& lobe : lobes) {
+    curve = curve || lobe.fresnel == Fresnel::kCurve;
+    coat = coat || IsCoat(lobe.fresnel);
+    if (IsCoat(lobe.fresnel)) continue;
+    name += name.empty() ? "" : "+";
+    name += lobe.direction == LobeDirection::kRetro ? "retro" : NameOf(NdfChoices(), lobe.ndf);
+  }
+  return name + (curve ? "+curve" : "") + (coat ? "+coat" : "");
+}
+
 }  // namespace
 
 LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Measurement* measurement) {
@@ -293,13 +306,9 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   const auto with_curve = [&](std::vector<Lobe> lobes, const Rung* base) {
     if (base == nullptr) return;
     Model curved;
-    std::string name;
-    for (Lobe& lobe : lobes) {
-      lobe.fresnel = Fresnel::kCurve;
-      name += NameOf(NdfChoices(), lobe.ndf) + std::string("+");
-    }
+    for (Lobe& lobe : lobes) lobe.fresnel = Fresnel::kCurve;
     curved.lobes = std::move(lobes);
-    ladder.Try(curved, name + "curve", base);
+    ladder.Try(curved, NameOfLobes(curved.lobes), base);
   };
   with_curve({{profile}}, with_profile);
   with_curve({{shape}, {Ndf::kGgx}}, with_two);
@@ -310,13 +319,6 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   Model interfaced = ladder.Best().recipe.model;
   interfaced.diffuse = Diffuse::kInterfaced;
   ladder.Try(interfaced, ladder.BestName() + "+interfaced", &ladder.Best());
-  // Below a coat the diffuse part is Lambertian; a coat's reflectance is calibrated, so that a free scale has none.
-  Model coated = ladder.Best().recipe.model;
-  if (!ladder.scaled() && !spectrum && coated.lobes.size() < kMostLobes) {
-    coated.diffuse = Diffuse::kLambert;
-    coated.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered});
-    ladder.Try(coated, ladder.BestName() + "+coat", &ladder.Best());
-  }
   for (const bool retro : {true, false}) {
     Model more = ladder.Best().recipe.model;
     if (more.lobes.size() == kMostLobes || (!retro && (more.lobes.size() == 1 || spectrum))) continue;
@@ -324,6 +326,15 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
     if (retro) lobe.direction = LobeDirection::kRetro;
     more.lobes.push_back(lobe);
     ladder.Try(more, ladder.BestName() + (retro ? "+retro" : "+ggx"), &ladder.Best());
+  }
+  // Last, as a third lobe may do the same. Below a coat the diffuse part is Lambertian; a coat's reflectance is
+  // calibrated, so that a free scale has none.
+  if (!ladder.scaled() && !spectrum) {
+    Model coated = ladder.Best().recipe.model;
+    coated.diffuse = Diffuse::kLambert;
+    coated.lobes.resize(std::min(coated.lobes.size(), kMostLobes - 1));
+    coated.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered});
+    ladder.Try(coated, NameOfLobes(coated.lobes), &ladder.Best());
   }
   return ladder.Choose();
 }
