@@ -52,11 +52,41 @@ Measurement MeasurementOf(const Experiment& experiment, const Truth& truth, std:
 
 }  // namespace
 
+namespace {
+
+std::vector<double> KnotsOf(const Lobe& lobe) {
+  const std::shared_ptr<const ProfileGrid>& grid = GridOf(lobe);
+  return grid == nullptr ? std::vector<double>{} : grid->spline()->knots();
+}
+
+// Largest relative difference of the fitted parameters that have an error: of the lobes' ellipses in slope space, of all
+// others against the larger of 1 and the truth.
+double DifferenceFrom(const Truth& truth, const Material& material) {
+  double largest = SlopeDifference(truth, material.Values());
+  const std::vector<Parameter> parameters = Parameters(truth.model);
+  std::vector<bool> of_ellipse(parameters.size());
+  for (std::size_t l = 0; l < truth.model.lobes.size(); ++l)
+    std::fill_n(of_ellipse.begin() + static_cast<std::ptrdiff_t>(FirstParameter(truth.model, l)), kEllipseParameters,
+                true);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const FittedParameter& fitted = material.parameters[i];
+    for (std::size_t c = 0; c < fitted.values.size() && !of_ellipse[i]; ++c) {
+      const double expected = truth.values[i][c];
+      if (!std::isnan(fitted.standard_error[c]))
+        largest = std::max(largest, std::fabs(fitted.values[c] - expected) / std::max(1.0, std::fabs(expected)));
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
 bool IsSameModel(const Model& a, const Model& b) {
   if (a.lobes.size() != b.lobes.size() || a.diffuse != b.diffuse) return false;
   for (std::size_t l = 0; l < a.lobes.size(); ++l) {
     if (a.lobes[l].ndf != b.lobes[l].ndf || a.lobes[l].masking != b.lobes[l].masking ||
-        a.lobes[l].fresnel != b.lobes[l].fresnel || a.lobes[l].metal != b.lobes[l].metal) {
+        a.lobes[l].fresnel != b.lobes[l].fresnel || a.lobes[l].metal != b.lobes[l].metal ||
+        a.lobes[l].direction != b.lobes[l].direction || KnotsOf(a.lobes[l]) != KnotsOf(b.lobes[l])) {
       return false;
     }
   }
@@ -100,7 +130,7 @@ Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measure
     const bool comparable = same && material.metric == NameOf(MetricChoices(), experiment.recipe.metric) &&
                             RowOf(experiment.recipe.metric).curve != Curve::kAsinh;
     trial.cost_at_truth = comparable ? CostAt(truth, experiment, measurement) : kNan;
-    trial.slope_difference = same ? SlopeDifference(truth, values) : kNan;
+    trial.difference = same ? DifferenceFrom(truth, material) : kNan;
   } catch (const InputError& error) {
     trial.error = error.what();
   }

@@ -41,7 +41,7 @@ struct Trial {
   // Cost of the true parameters on the same samples; NaN where the fitted model is not the truth's, or the fit chose
   // its metric or noise itself.
   double cost_at_truth = 0;
-  double slope_difference = 0;  // of the fitted lobes from the true ones; NaN as above
+  double difference = 0;  // largest relative one of the fitted parameters from the true ones; NaN as above
   std::size_t minima = 0, samples = 0, incidences = 0;
   bool misfit = false;  // flagged
   double seconds = 0;

@@ -31,7 +31,7 @@ Recovery JudgeRecovery(const Experiment&, const std::vector<Trial>& trials, doub
     const Trial& trial = trials[i];
     if (!trial.done) continue;
     ++recovery.trials;
-    const double difference = trial.error.empty() ? trial.slope_difference : INFINITY;
+    const double difference = trial.error.empty() ? trial.difference : INFINITY;
     differences.push_back(difference);
     if (difference <= limit) continue;
     recovery.exceptions.push_back({i, difference, ReasonOf(trial)});
@@ -49,7 +49,8 @@ Recovery JudgeRecovery(const Experiment&, const std::vector<Trial>& trials, doub
 
 std::string ToText(const Recovery& recovery, const Experiment& experiment, const std::vector<Trial>& trials) {
   std::string text = fmt::format(
-      "{} materials without noise: relative difference in slope space, median {:.1e}, largest {:.1e}\n"
+      "{} materials without noise: relative difference of lobes in slope space and of all else, median {:.1e}, largest "
+      "{:.1e}\n"
       "{} within {:g}, {} beyond ({} of these wrong without a sign)\n",
       recovery.trials, recovery.median, recovery.largest, recovery.trials - recovery.exceptions.size(), recovery.limit,
       recovery.exceptions.size(), recovery.silent);

@@ -11,7 +11,7 @@ namespace lobefit {
 struct Recovery {
   std::size_t trials = 0;
   double limit = 1e-8;
-  double median = 0, largest = 0;  // relative difference in slope space
+  double median = 0, largest = 0;  // relative difference of lobes in slope space and of all else
   // Trials beyond the limit, worst first, with their reason in words.
   struct Exception {
     std::size_t trial = 0;

@@ -56,7 +56,7 @@ Trial TrialOf(const Json& line) {
   trial.degenerate = line.at("degenerate").get<std::vector<std::string>>();
   trial.cost = NumberOf(line.at("cost"));
   trial.cost_at_truth = NumberOf(line.at("cost_at_truth"));
-  trial.slope_difference = NumberOf(line.at("slope_difference"));
+  trial.difference = NumberOf(line.at("difference"));
   trial.minima = line.at("minima").get<std::size_t>();
   trial.samples = line.at("samples").get<std::size_t>();
   trial.incidences = line.at("incidences").get<std::size_t>();
@@ -135,7 +135,7 @@ std::string ToLine(const std::string& key, std::size_t index, const Trial& trial
                      {"degenerate", trial.degenerate},
                      {"cost", TrialNumber(trial.cost)},
                      {"cost_at_truth", TrialNumber(trial.cost_at_truth)},
-                     {"slope_difference", TrialNumber(trial.slope_difference)},
+                     {"difference", TrialNumber(trial.difference)},
                      {"minima", trial.minima},
                      {"samples", trial.samples},
                      {"incidences", trial.incidences},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -24,6 +25,24 @@ void PutEllipsoid(const Ellipsoid& e, std::size_t first, ParameterValues* values
   for (std::size_t i = 0; i < 5; ++i) (*values)[first + i] = {numbers[i]};
 }
 
+struct Drawn {
+  double low, high;
+};
+// What a parameter other than those of the ellipses is drawn from; none: it stays as it is, as optical constants do and
+// what a fit leaves where it is.
+std::optional<Drawn> RangeOf(const Parameter& parameter, const MaterialRange& range) {
+  if (!parameter.free) return std::nullopt;
+  const std::string name = parameter.name.substr(parameter.name.find('.') + 1);
+  if (name == "diffuse") return Drawn{range.diffuse_low, range.diffuse_high};
+  if (name == "f0" || name == "scale" || name.starts_with("F_")) return Drawn{range.f0_low, range.f0_high};
+  if (name == "tint") return Drawn{0.5, 1.1};
+  if (name == "diffuse_roughness") return Drawn{0.1, 0.9};
+  if (name == "gamma") return Drawn{1.6, 6};
+  if (name.starts_with("q")) return Drawn{-0.4, 2};
+  if (name == "ior" && parameter.shared) return Drawn{1.3, 2.2};  // of a coat
+  return std::nullopt;
+}
+
 // The other writing of the same distribution.
 Ellipsoid TurnedByPi(const Ellipsoid& e) {
   return {e.alpha_x, e.alpha_y, -e.theta_x, -e.theta_y, e.theta_z > 0 ? e.theta_z - kPi : e.theta_z + kPi};
@@ -39,8 +58,11 @@ Truth TruthOf(const Recipe& recipe, const std::vector<std::string>& channels, co
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const ParameterRecipe& entry = recipe.parameters[i];
     std::vector<double> values = entry.fixed.empty() ? entry.start : entry.fixed;
-    const bool tied = values.empty() && !parameters[i].free;
-    if (tied) values = {parameters[i].unit == "deg" ? 0.0 : truth.values[i - 1][0]};
+    if (values.empty() && !parameters[i].free) {
+      // alpha_y is tied to alpha_x, an angle is 0; an index of an interface has a start of its own.
+      const bool tied = parameters[i].group == ParameterGroup::kShape && parameters[i].unit != "deg";
+      values = {tied ? truth.values[i - 1][0] : parameters[i].start};
+    }
     const std::size_t wanted = parameters[i].per_channel ? channels.size() : 1;
     if (values.size() == 1) values.resize(wanted, values[0]);
     if (values.size() != wanted) {
@@ -157,15 +179,10 @@ Truth DrawMaterial(const MaterialRange& range, const Truth& like, RandomNumbers*
     PutEllipsoid(e, first, &truth.values);
   }
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].group == ParameterGroup::kShape) continue;
-    // Optical constants stay as they are.
-    const bool diffuse = parameters[i].group == ParameterGroup::kDiffuse;
-    const bool reflectance = parameters[i].name.ends_with("f0") || parameters[i].name.ends_with("scale");
-    if (!diffuse && !reflectance) continue;
-    for (double& value : truth.values[i]) {
-      value = diffuse ? random->Uniform(range.diffuse_low, range.diffuse_high)
-                      : random->Uniform(range.f0_low, range.f0_high);
-    }
+    const std::optional<Drawn> drawn = RangeOf(parameters[i], range);
+    if (!drawn) continue;
+    for (double& value : truth.values[i]) value = random->Uniform(drawn->low, drawn->high);
+    if (parameters[i].shared) truth.values[i].assign(truth.values[i].size(), truth.values[i][0]);
   }
   return truth;
 }

@@ -26,7 +26,7 @@ TEST(Experiment, TrialsDoNotDependOnThreadsOrOnHowManyThereAre) {
 TEST(Experiment, NoiseFreeTrialsRecoverTheTruth) {
   const Trial trial = RunTrial(test::BrushedExperiment("none"), 0);
   EXPECT_TRUE(trial.converged);
-  EXPECT_LT(trial.slope_difference, 1e-8);
+  EXPECT_LT(trial.difference, 1e-8);
   for (std::size_t e = 0; e < trial.value.size(); ++e)
     EXPECT_NEAR(trial.value[e], trial.truth[e], 1e-6 * std::fabs(trial.truth[e]) + 1e-6);
   EXPECT_NEAR(trial.cost_at_truth, 0, 1e-20);
@@ -49,7 +49,7 @@ TEST(Experiment, AnotherModelIsComparedByNamesOnly) {
   experiment.recipe = DefaultRecipe(two, "height");
   const Trial trial = RunTrial(experiment, 0);
   EXPECT_TRUE(std::isnan(trial.cost_at_truth));
-  EXPECT_TRUE(std::isnan(trial.slope_difference));
+  EXPECT_TRUE(std::isnan(trial.difference));
   EXPECT_NEAR(trial.truth[0], 0.35, 1e-12);
   EXPECT_NEAR(trial.value[0], 0.35, 0.1);
 }

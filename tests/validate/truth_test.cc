@@ -12,6 +12,8 @@
 #include "lobefit/core/ndf/ellipsoid.h"
 #include "lobefit/io/csv/writer.h"
 #include "lobefit/io/read.h"
+#include "lobefit/recipe/recipe.h"
+#include "lobefit/validate/experiment.h"
 #include "lobefit/validate/truth_file.h"
 
 namespace lobefit {
@@ -69,6 +71,49 @@ TEST(Truth, DrawnMaterialsStayInTheirRangeAndKeepWhatTheModelTies) {
   EXPECT_EQ(isotropic.alpha_x, isotropic.alpha_y);
   EXPECT_EQ(isotropic.theta_x, 0);
   EXPECT_EQ(isotropic.theta_z, 0);
+}
+
+// What a fit leaves at its start is there in the truth too.
+TEST(Truth, OfARecipeHasTheStartsOfWhatIsNotFitted) {
+  const Recipe recipe = ParseRecipe(
+      "diffuse = \"interfaced\"\n[[lobe]]\nndf = \"ggx\"\n[parameters]\nalpha_x = { start = 0.2 }\nf0 = { start = "
+      "0.4 }\ndiffuse = { start = 0.3 }\n",
+      "r.toml");
+  const Truth truth = TruthOf(recipe, {"R", "G"}, "r.toml");
+  EXPECT_EQ(truth.values[1], std::vector<double>{0.2});  // alpha_y
+  EXPECT_EQ(truth.values[6], (std::vector<double>{1.5, 1.5}));
+  EXPECT_EQ(truth.values[7], (std::vector<double>{0.3, 0.3}));
+}
+
+TEST(Truth, DrawnMaterialsOfRicherKinds) {
+  const Recipe recipe = ParseRecipe(
+      "[[lobe]]\nndf = \"student\"\nfresnel = \"curve\"\n[[lobe]]\nndf = \"ggx\"\nfresnel = \"coat-layered\"\n"
+      "[parameters]\nalpha_x = { start = 0.2 }\ngamma = { start = 2 }\nF_0 = { start = 1 }\nF_1 = { start = 1 }\n"
+      "F_2 = { start = 1 }\nF_3 = { start = 1 }\nF_4 = { start = 1 }\nF_5 = { start = 1 }\n"
+      "\"lobe2.alpha_x\" = { start = 0.1 }\n\"lobe2.ior\" = { start = 1.5 }\ndiffuse = { start = 0.1 }\n",
+      "r.toml");
+  const Truth like = TruthOf(recipe, {"R", "G"}, "r.toml");
+  RandomNumbers random(1);
+  const Truth a = DrawMaterial({}, like, &random), b = DrawMaterial({}, like, &random);
+  const std::vector<Parameter> parameters = Parameters(like.model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    EXPECT_EQ(a.values[i] != b.values[i], parameters[i].free || parameters[i].name.ends_with("alpha_y"))
+        << parameters[i].name;
+    for (const double value : a.values[i]) {
+      EXPECT_GE(value, parameters[i].low) << parameters[i].name;
+      EXPECT_LE(value, parameters[i].high) << parameters[i].name;
+    }
+    EXPECT_TRUE(!parameters[i].shared || a.values[i][0] == a.values[i][1]) << parameters[i].name;
+  }
+}
+
+TEST(SameModel, LobesOfOtherDirectionsOrKnotsAreOthers) {
+  Model model = {{{Ndf::kProfile}}, Diffuse::kLambert}, retro = model, knots = model;
+  retro.lobes[0].direction = LobeDirection::kRetro;
+  knots.lobes[0].grid = GridWithKnots({0, 1, 2});
+  EXPECT_TRUE(IsSameModel(model, model));
+  EXPECT_FALSE(IsSameModel(model, retro));
+  EXPECT_FALSE(IsSameModel(model, knots));
 }
 
 TEST(TruthFile, CommentsAndSidecarsReadBackAndFitsReadTheSamplesOnly) {

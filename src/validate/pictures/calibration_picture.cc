@@ -122,7 +122,7 @@ void DrawRecovery(const Experiment& experiment, const std::vector<Trial>& trials
   std::vector<double> digits;
   for (const Trial& trial : trials) {
     if (!IsFitted(trial)) continue;
-    digits.push_back(std::log10(std::max(trial.slope_difference, 1e-17)));
+    digits.push_back(std::log10(std::max(trial.difference, 1e-17)));
     for (std::size_t e = 0; e < entries.size(); ++e) {
       if (!trial.free[e] || std::isnan(trial.truth[e])) continue;
       truth[e].push_back(trial.truth[e]);
@@ -139,7 +139,7 @@ void DrawRecovery(const Experiment& experiment, const std::vector<Trial>& trials
   const std::vector<double> counts = Counts(digits, kLow, kHigh);
   const double highest = *std::max_element(counts.begin(), counts.end());
   const Axes axes = Frame(canvas, page.Next("Relative difference / fits"), {kLow, kHigh}, {0, 1.1 * highest + 1},
-                          LinearTicks(kLow, kHigh, 5), "log_{10} of the difference in slope space");
+                          LinearTicks(kLow, kHigh, 5), "log_{10} of the largest relative difference");
   DrawBars(canvas, axes, kLow, kHigh, counts);
   for (std::size_t e = 0; e < entries.size(); ++e) {
     if (truth[e].empty()) continue;
