@@ -28,6 +28,8 @@ constexpr std::size_t kSamples = 4000, kMostFolds = 4, kStarts = 4;
 // Wavelengths that a spectrum is judged by; the shape is that of all, and descents cost the square of their number.
 constexpr std::size_t kMostChannels = 5;
 constexpr std::size_t kMostLobes = 3;
+// A part whose gain in the mean square on held-out directions is beyond chance.
+constexpr double kMuch = 0.9;
 // Incident directions at which a model's albedo is looked at.
 constexpr std::size_t kIncidences = 6;
 
@@ -248,17 +250,18 @@ Ndf InShape(Ndf like, Ndf round, Ndf tilted, Ndf anisotropic, Ndf free) {
   return IsTilted(like) ? free : anisotropic;
 }
 
-std::string NameOfLobes(const std::vector<Lobe>& lobes) {
+std::string NameOfParts(const Model& model) {
   std::string name;
   bool curve = false, coat = false;
-  for (const Lobe& lobe : lobes) {
+  for (const Lobe& lobe : model.lobes) {
     curve = curve || lobe.fresnel == Fresnel::kCurve;
     coat = coat || IsCoat(lobe.fresnel);
     if (IsCoat(lobe.fresnel)) continue;
     name += name.empty() ? "" : "+";
     name += lobe.direction == LobeDirection::kRetro ? "retro" : NameOf(NdfChoices(), lobe.ndf);
   }
-  return name + (curve ? "+curve" : "") + (coat ? "+coat" : "");
+  return name + (curve ? "+curve" : "") + (coat ? "+coat" : "") +
+         (model.diffuse == Diffuse::kInterfaced ? "+interfaced" : "");
 }
 
 }  // namespace
@@ -288,7 +291,8 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
     ladder.Try(with_ndf(Ndf::kGgxAnisotropic), "ggx-anisotropic");
     ladder.Try(with_ndf(Ndf::kEllipsoid), "ellipsoid");
   }
-  const Ndf shape = ladder.Simplest().recipe.model.lobes[0].ndf;
+  const Rung& plain = ladder.Simplest();
+  const Ndf shape = plain.recipe.model.lobes[0].ndf;
   const Ndf student =
       InShape(shape, Ndf::kStudent, Ndf::kStudentTilted, Ndf::kStudentAnisotropic, Ndf::kStudentEllipsoid);
   const Ndf profile =
@@ -308,7 +312,7 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
     Model curved;
     for (Lobe& lobe : lobes) lobe.fresnel = Fresnel::kCurve;
     curved.lobes = std::move(lobes);
-    ladder.Try(curved, NameOfLobes(curved.lobes), base);
+    ladder.Try(curved, NameOfParts(curved), base);
   };
   with_curve({{profile}}, with_profile);
   with_curve({{shape}, {Ndf::kGgx}}, with_two);
@@ -316,25 +320,43 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   // Two profiles in each of a spectrum's channels cost minutes, and predict little better.
   const bool spectrum = measurement->channels.names.size() > kMostChannels;
   if (!spectrum) with_curve({{profile}, {profile}}, with_two);
+  // A part that gains much may gain it over one lobe as well, where tails and curves stood in for it.
+  const auto add_part = [&](const Model& with, const std::string& name, const Model& alone) {
+    const double before = ladder.Best().mean();
+    const Rung* const rung = ladder.Try(with, name, &ladder.Best());
+    if (rung != nullptr && rung->mean() < kMuch * before) ladder.Try(alone, NameOfParts(alone));
+  };
   Model interfaced = ladder.Best().recipe.model;
   interfaced.diffuse = Diffuse::kInterfaced;
-  ladder.Try(interfaced, ladder.BestName() + "+interfaced", &ladder.Best());
+  add_part(interfaced, ladder.BestName() + "+interfaced", {{{shape}}, Diffuse::kInterfaced});
   for (const bool retro : {true, false}) {
     Model more = ladder.Best().recipe.model;
     if (more.lobes.size() == kMostLobes || (!retro && (more.lobes.size() == 1 || spectrum))) continue;
     Lobe lobe = {Ndf::kGgx, Masking::kSmithSeparable, retro ? Fresnel::kNone : more.lobes[0].fresnel};
     if (retro) lobe.direction = LobeDirection::kRetro;
     more.lobes.push_back(lobe);
-    ladder.Try(more, ladder.BestName() + (retro ? "+retro" : "+ggx"), &ladder.Best());
+    const std::string name = ladder.BestName() + (retro ? "+retro" : "+ggx");
+    if (retro) {
+      add_part(more, name, {{{shape}, lobe}, Diffuse::kLambert});
+    } else {
+      ladder.Try(more, name, &ladder.Best());
+    }
   }
   // Last, as a third lobe may do the same. Below a coat the diffuse part is Lambertian; a coat's reflectance is
   // calibrated, so that a free scale has none.
   if (!ladder.scaled() && !spectrum) {
-    Model coated = ladder.Best().recipe.model;
-    coated.diffuse = Diffuse::kLambert;
-    coated.lobes.resize(std::min(coated.lobes.size(), kMostLobes - 1));
-    coated.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered});
-    ladder.Try(coated, NameOfLobes(coated.lobes), &ladder.Best());
+    const Lobe coat = {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered};
+    const Model simple = {{{shape}, coat}, Diffuse::kLambert};
+    const Rung* const rung = ladder.Try(simple, NameOfParts(simple));
+    if (rung != nullptr && rung->mean() < kMuch * plain.mean()) {
+      Model coated = ladder.Best().recipe.model;
+      coated.diffuse = Diffuse::kLambert;
+      if (IsCoat(coated.lobes.back().fresnel)) coated.lobes.pop_back();
+      coated.lobes.resize(std::min(coated.lobes.size(), kMostLobes - 1));
+      coated.lobes.push_back(coat);
+      if (coated.lobes.size() > 2 || coated.lobes[0].ndf != shape)
+        ladder.Try(coated, NameOfParts(coated), &ladder.Best());
+    }
   }
   return ladder.Choose();
 }

@@ -56,6 +56,9 @@ TEST(Ladder, WhatTheTruthNeedsIsFound) {
   retro.model.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kNone});
   retro.model.lobes[1].direction = LobeDirection::kRetro;
   retro.values.insert(retro.values.begin() + 6, {{0.1}, {0.1}, {0}, {0}, {0}, {0.3}});
+  SyntheticCase coat = Gray(Ndf::kGgx, 0.4, 0.4);
+  coat.model.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered});
+  coat.values.insert(coat.values.begin() + 6, {{0.1}, {0.1}, {0}, {0}, {0}, {1.8}, {0}});
   const struct {
     SyntheticCase truth;
     const char* part;  // of the name of the model
@@ -63,7 +66,8 @@ TEST(Ladder, WhatTheTruthNeedsIsFound) {
                {student, "student"},
                {two, "+ggx"},
                {curve, "curve"},
-               {retro, "retro"}};
+               {retro, "ggx+retro"},
+               {coat, "ggx+coat"}};
   for (const auto& [truth, part] : cases) {
     const LadderChoice choice = ChoiceFor(truth, 7);
     const TriedModel& chosen = Chosen(choice);
