@@ -7,8 +7,8 @@
 #include <exception>
 #include <new>
 
-#include "help.h"
-#include "verb.h"
+#include "text/help.h"
+#include "verbs/verb.h"
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>

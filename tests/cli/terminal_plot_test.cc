@@ -1,4 +1,4 @@
-#include "apps/lobefit/terminal_plot.h"
+#include "apps/lobefit/text/terminal_plot.h"
 
 #include <algorithm>
 

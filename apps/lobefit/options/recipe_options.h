@@ -1,0 +1,67 @@
+// The recipe of a fit from the command line: by name or file, or automatic, with single choices overridden.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "options/instrument_options.h"
+#include <CLI/CLI.hpp>
+
+#include "lobefit/measurement/measurement.h"
+#include "lobefit/recipe/recipe.h"
+
+namespace lobefit {
+
+// Single choices that override those of a recipe.
+class RecipeOverrides {
+ public:
+  void AddTo(CLI::App* app, const std::string& group);
+  // Throws UsageError.
+  void Apply(Recipe* recipe) const;
+  // Says in the measurement, and so in every result, what the values are taken for.
+  void Remark(Measurement* measurement) const;
+  bool HasFreeScale() const { return scale_ == "free"; }
+
+ private:
+  std::string metric_, weighting_, energy_, scale_;
+  double theta_max_deg_ = 0;
+};
+
+class RecipeOptions {
+ public:
+  void AddTo(CLI::App* app);
+  bool IsAutomatic() const { return recipe_ == "auto"; }
+  // Throws UsageError and InputError.
+  Recipe Choose(const Measurement& measurement) const;
+  const RecipeOverrides& overrides() const { return overrides_; }
+  // The recipe as text, or that it is chosen by the measurement: what decides the fit beside the other options. Throws
+  // as Choose.
+  std::string Resolved() const;
+
+ private:
+  std::string recipe_ = "auto";
+  RecipeOverrides overrides_;
+  InstrumentOptions instrument_;
+};
+
+// Where the recipes of the library are: beside the installed program, else in the source tree that built it.
+std::filesystem::path RecipeFolder();
+// Names of the recipes of the library, sorted.
+std::vector<std::string> RecipeNames();
+
+// What a validation fits: the truth's own model unless a recipe is given.
+class FittedModel {
+ public:
+  void AddTo(CLI::App* app);
+  Recipe Choose(const Model& truth) const;
+
+ private:
+  std::string recipe_, metric_;
+  InstrumentOptions instrument_;
+};
+
+// A recipe file, or a recipe of the library by its name ("ellipsoid"). Throws InputError that lists the names.
+Recipe LoadRecipe(const std::string& name_or_path);
+
+}  // namespace lobefit

@@ -1,0 +1,19 @@
+#include "tasks/array_job.h"
+
+#include <fmt/format.h>
+
+#include "lobefit/base/error.h"
+
+namespace lobefit {
+
+int WriteOrSend(const ArrayJob& job, bool send) {
+  const std::string script = WriteArray(job).string();
+  if (send) {
+    SendScript(script);
+  } else {
+    fmt::print("Script:  {} ({} shards)\nSend it: sh {}\n", script, job.shards, script);
+  }
+  return kExitDone;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,91 @@
+#include "tasks/batch_tasks.h"
+
+#include <utility>
+
+#include "options/report_formats.h"
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
+#include "lobefit/base/printable.h"
+#include "lobefit/base/version.h"
+#include "lobefit/batch/results/result_row.h"
+#include "lobefit/batch/results/sphere_picture.h"
+#include "lobefit/material/json.h"
+
+namespace lobefit {
+namespace {
+
+// The command that fits one task alone.
+std::string CommandOf(const Task& task) {
+  std::string command = "lobefit fit " + ShellWord(task.file);
+  for (const auto& [name, word] : task.options) command += " --" + name + " " + ShellWord(word);
+  return command;
+}
+
+}  // namespace
+
+std::vector<std::string> FitOptionNames() {
+  CLI::App app;
+  FitFileOptions options;
+  options.AddTo(&app);
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      if (name != "help") names.push_back(name);
+    }
+  }
+  return names;
+}
+
+std::string TaskOptions::SettingsOf(const OptionWords& words) {
+  auto options = std::make_shared<FitFileOptions>();
+  CLI::App app;
+  options->AddTo(&app);
+  // The parser takes them from the end.
+  std::vector<std::string> arguments;
+  std::string text = std::string("lobefit ") + Version() + "\n";
+  for (const auto& [name, word] : words) {
+    arguments.insert(arguments.begin(), "--" + name + "=" + word);
+    if (name != "recipe") text += "--" + name + "=" + word + "\n";
+  }
+  try {
+    app.parse(std::move(arguments));
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+  options->measurement.Check();
+  text += options->recipe.Resolved();
+  const std::string settings = Sha256Hex(text);
+  options_.emplace(settings, std::move(options));
+  return settings;
+}
+
+FitWork::FitWork(std::filesystem::path out, BatchReports reports, std::vector<std::string> formats,
+                 const TaskOptions& options)
+    : out_(std::move(out)), reports_(reports), formats_(std::move(formats)), options_(options) {}
+
+Outcome FitWork::operator()(const Task& task, int threads) const {
+  FittedFile fitted = FitFile(options_.Of(task), {task.path.string()}, threads, CommandOf(task));
+  const std::string doubts = DoubtsAbout(fitted.material);
+  const std::filesystem::path document = ResultPath(out_, task.id, ".material.json");
+  MakeFolder(document.parent_path());
+  if (reports_ == BatchReports::kAll || (reports_ == BatchReports::kDoubtful && !doubts.empty())) {
+    ReportOptions report;
+    report.threads = threads;
+    WriteReports(formats_, fitted.material, fitted.measurement, ResultPath(out_, task.id, ".report.png"), report);
+  }
+  if (const SpherePicture picture = DrawSpheres(fitted.material, fitted.measurement); !picture.png.empty()) {
+    WriteFileAtomically(ResultPath(out_, task.id, picture.measured ? ".spheres.png" : ".sphere.png"), picture.png);
+  }
+  // Last, so that where the document is everything is.
+  const std::string json = ToJson(fitted.material);
+  WriteFileAtomically(document, json);
+  return {doubts.empty() ? TaskStatus::kFitted : TaskStatus::kDoubtful,
+          doubts.empty() ? kExitDone : kExitFit,
+          doubts,
+          ResultRow(fitted.material),
+          json.size(),
+          fitted.measurement.sha256};
+}
+
+}  // namespace lobefit
