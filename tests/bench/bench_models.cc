@@ -1,0 +1,258 @@
+// What the richer models cost, as ratios of one run: a pass of value, gradient and Gram matrix of each kind against one
+// GGX lobe's, and a descent of a free profile with a free Fresnel curve against one AutoDiffCostFunction a sample with
+// the same model. Tables in Markdown.
+//   bench_models [--quick]
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include "lobefit/base/parallel.h"
+#include "lobefit/core/fresnel/fresnel.h"
+#include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/solve.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/math/quadrature.h"
+#include "lobefit/synthesis/synthesis.h"
+#include "lobefit/validate/truth.h"
+
+namespace lobefit {
+namespace {
+
+double Now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// Three channels; parameters that a model has beside its ellipses start where the table says, or at `rest`.
+Truth TruthLike(const Model& model, double rest) {
+  Truth truth = {model, {}, {"R", "G", "B"}};
+  for (const Parameter& parameter : Parameters(model)) {
+    const bool alpha = parameter.name.ends_with("alpha_x") || parameter.name.ends_with("alpha_y");
+    const bool linear = parameter.per_channel && parameter.free && !parameter.shared;
+    const double value = alpha ? (parameter.name.starts_with("lobe2") ? 0.08 : 0.25) : linear ? rest : parameter.start;
+    truth.values.emplace_back(parameter.per_channel ? 3 : 1, value);
+  }
+  return truth;
+}
+
+Measurement Synthetic(const Truth& truth, double step_deg) {
+  GoniometerLayout layout;
+  for (double theta = 5; theta < 76; theta += 5) layout.polar_angles.push_back(DegreesToRadians(theta));
+  layout.azimuths = {0, 1, 2};
+  layout.detector_step = DegreesToRadians(step_deg);
+  Measurement measurement = Synthesise(Goniometer(layout), {truth.channels, {}}, BrdfOf(truth), {0.05, 0}, 1);
+  measurement.source = "synthetic";
+  return measurement;
+}
+
+// Seconds of a pass on one thread, the best of several.
+double OnePass(const Recipe& recipe, const Measurement& measurement) {
+  const Layout layout(recipe, measurement.channels.names);
+  const Problem problem(measurement.samples, recipe);
+  ThreadPool pool(1);
+  std::vector<double> u =
+      layout.FromShapes(std::vector<Ellipsoid>(recipe.model.lobes.size(), Ellipsoid{0.25, 0.2, 0, 0, 0.3}));
+  for (std::size_t i = layout.shape_size(); i < u.size(); ++i) u[i] = std::max(u[i], 0.2);
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  double seconds = HUGE_VAL;
+  for (int run = 0; run < 9; ++run) {
+    const double start = Now();
+    Linearise(problem, layout, u.data(), &pool, &hessian, &gradient);
+    seconds = std::min(seconds, Now() - start);
+  }
+  return seconds;
+}
+
+void Passes(double step_deg) {
+  const Lobe ggx = {Ndf::kGgx}, ellipsoid = {Ndf::kEllipsoid};
+  const auto with = [](Lobe lobe, Fresnel fresnel) {
+    lobe.fresnel = fresnel;
+    return lobe;
+  };
+  Lobe retro = with(ggx, Fresnel::kNone);
+  retro.direction = LobeDirection::kRetro;
+  const struct {
+    const char* name;
+    Model model;
+    double source = 0, detector = 0;
+  } cases[] = {
+      {"ggx", {{ggx}, Diffuse::kLambert}},
+      {"ellipsoid", {{ellipsoid}, Diffuse::kLambert}},
+      {"ellipsoid, curve", {{with(ellipsoid, Fresnel::kCurve)}, Diffuse::kLambert}},
+      {"student", {{{Ndf::kStudent}}, Diffuse::kLambert}},
+      {"profile", {{{Ndf::kProfile}}, Diffuse::kLambert}},
+      {"profile, curve", {{with({Ndf::kProfile}, Fresnel::kCurve)}, Diffuse::kLambert}},
+      {"ggx, f82", {{with(ggx, Fresnel::kSchlickF82)}, Diffuse::kLambert}},
+      {"ggx, interfaced", {{ggx}, Diffuse::kInterfaced}},
+      {"ggx, oren-nayar", {{ggx}, Diffuse::kOrenNayar}},
+      {"ggx + retro", {{ggx, retro}, Diffuse::kLambert}},
+      {"ellipsoid + coat", {{ellipsoid, with(ggx, Fresnel::kCoatLayered)}, Diffuse::kLambert}},
+      {"ellipsoid + refracting coat", {{ellipsoid, with(ggx, Fresnel::kCoatRefracted)}, Diffuse::kLambert}},
+      {"ellipsoid, detector's disc of 1.5 degrees", {{ellipsoid}, Diffuse::kLambert}, 0, 1.5},
+      {"ellipsoid, both discs", {{ellipsoid}, Diffuse::kLambert}, 1, 1.5},
+  };
+  const Measurement measurement = Synthetic(TruthLike(cases[1].model, 0.3), step_deg);
+  const auto count = static_cast<double>(measurement.samples.size());
+  fmt::print("| one pass on {} samples x RGB, one thread | ns a sample | over ggx | over ellipsoid | columns |\n",
+             measurement.samples.size());
+  fmt::print("|---|---|---|---|---|\n");
+  double first = 0, second = 0;
+  for (const auto& c : cases) {
+    Recipe recipe = DefaultRecipe(c.model, c.name);
+    recipe.metric = Metric::kLog;
+    recipe.instrument.source = DegreesToRadians(c.source);
+    recipe.instrument.detector = DegreesToRadians(c.detector);
+    const double seconds = OnePass(recipe, measurement);
+    if (first == 0) {
+      first = seconds;
+    } else if (second == 0) {
+      second = seconds;
+    }
+    const Layout layout(recipe, measurement.channels.names);
+    fmt::print("| {} | {:.0f} | {:.1f} | {:.1f} | {} |\n", c.name, 1e9 * seconds / count, seconds / first,
+               second > 0 ? seconds / second : NAN, layout.CoordinatesOfColumns(0).size() + 1);
+    std::fflush(stdout);
+  }
+}
+
+constexpr int kQ = 4, kParameters = 1 + kQ + 3 * kFresnelCurveSize + 3;
+
+// An isotropic profile about the normal with a free curve for any scalar, by quadrature a sample. u: ln alpha, q, the
+// curve's coefficients channel by channel, albedos.
+struct ProfileCost {
+  Vec3 wi, wo;
+  double target[3];
+  const ProfileSpline* spline;
+  const QuadratureRule* rule;  // on (-1, 1)
+
+  template <class T>
+  T Density(const T& t, const T* q) const {
+    const T u = log(1.0 + t);
+    const std::size_t interval = spline->Interval(Scalar(u));
+    const double* c = spline->Coefficients(interval);
+    const T x = u - spline->Left(interval);
+    T exponent = -2.0 * u;
+    for (std::size_t k = 0; k < kQ; ++k)
+      exponent += q[k] * (c[k] + x * (c[kQ + k] + x * (c[2 * kQ + k] + x * c[3 * kQ + k])));
+    return exp(exponent);
+  }
+  static double Scalar(double x) { return x; }
+  template <int N>
+  static double Scalar(const ceres::Jet<double, N>& x) {
+    return x.a;
+  }
+  // Integral of f over s in (0, infinity).
+  template <class T, class Function>
+  T Integral(const T& scale, const Function& f) const {
+    T sum(0);
+    for (std::size_t i = 0; i < rule->nodes.size(); ++i) {
+      const double y = 0.5 * (1 + rule->nodes[i]);
+      sum += 0.5 * rule->weights[i] / ((1 - y) * (1 - y)) * scale * f(scale * (y / (1 - y)));
+    }
+    return sum;
+  }
+  template <class T>
+  bool operator()(const T* u, T* residual) const {
+    const T alpha = exp(u[0]);
+    const T* q = u + 1;
+    const Vec3 wh = Normalized(wi + wo);
+    const T mass = 2.0 * Integral(T(1), [&](const T& r) { return r * Density(T(r * r), q); });
+    const T D =
+        Density(T((1 / (wh.z * wh.z) - 1) / (alpha * alpha)), q) / (kPi * mass * alpha * alpha * std::pow(wh.z, 4));
+    const auto masked = [&](double cosine) {
+      const T width = alpha * std::sqrt(std::max(1e-8, 1 - cosine * cosine)), a = cosine / width;
+      const T m = 2.0 / (kPi * mass) * Integral(T(1.0 + a), [&](const T& s) {
+                    return Density(T(a * a + s * s), q) * s * (s - a * atan2(s, a));
+                  });
+      return width * (a + m);  // max with the cosine: a centred lobe's is above it
+    };
+    const T specular = D / (4.0 * masked(wi.z) * masked(wo.z));
+    double basis[kFresnelCurveSize];
+    FresnelCurveBasis(Dot(wi, wh), basis);
+    for (int c = 0; c < 3; ++c) {
+      T fresnel(0);
+      for (std::size_t k = 0; k < kFresnelCurveSize; ++k)
+        fresnel += basis[k] * u[1 + kQ + static_cast<std::size_t>(c) * kFresnelCurveSize + k];
+      const T f = u[kParameters - 3 + c] * kInvPi + specular * fresnel;
+      residual[c] = log(1.0 + f * wi.z) - target[c];
+    }
+    return true;
+  }
+};
+
+void AgainstAutoDiff(double step_deg) {
+  Lobe lobe = {Ndf::kProfile, Masking::kSmithSeparable, Fresnel::kCurve};
+  lobe.grid = GridWithKnots({0, 1, 2, 4, 8});
+  const Model model = {{lobe}, Diffuse::kLambert};
+  Truth truth = TruthLike(model, 0.3);
+  truth.values[5] = {0.6};
+  truth.values[6] = {-0.4};
+  Measurement measurement = Synthetic(truth, step_deg);
+  Recipe recipe = DefaultRecipe(model, "bench");
+  recipe.metric = Metric::kLog;
+  const Layout layout(recipe, measurement.channels.names);
+  std::vector<double> start = layout.FromShapes({{0.4, 0.4, 0, 0, 0}});
+  for (std::size_t i = layout.shape_size(); i < start.size(); ++i) start[i] = 0.2;
+  const Samples& samples = measurement.samples;
+  const int threads = HardwareThreads();
+
+  // Coordinates of both are alpha, q, then channel by channel the curve and the albedo; the baseline has albedos last.
+  std::vector<double> u(kParameters, 0.2);
+  std::copy_n(start.begin(), 1 + kQ, u.begin());
+  const QuadratureRule rule = GaussLegendre(48);
+  double begin = Now();
+  ceres::Problem problem;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    auto* cost = new ProfileCost{samples.wi(i), samples.wo(i), {}, lobe.grid->spline().get(), &rule};
+    for (std::size_t c = 0; c < 3; ++c) cost->target[c] = std::log1p(samples.values[c][i] * samples.wi_z[i]);
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ProfileCost, 3, kParameters>(cost), nullptr, u.data());
+  }
+  for (int k = 1 + kQ; k < kParameters; ++k) {
+    problem.SetParameterLowerBound(u.data(), k, 0);
+    problem.SetParameterUpperBound(u.data(), k, 1);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.logging_type = ceres::SILENT;
+  options.function_tolerance = 1e-8;
+  options.num_threads = threads;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  const double slow = Now() - begin;
+
+  begin = Now();
+  ThreadPool pool(threads);
+  const Problem streamed(samples, recipe);
+  SolveOptions solve;
+  solve.function_tolerance = 1e-8;
+  const Solution solution = Solve(streamed, layout, start, solve, &pool);
+  const double fast = Now() - begin;
+  KernelModel kernel = layout.ToKernel(solution.u.data());
+  kernel.prior.clear();  // the baseline has none
+  const double cost = streamed.Sum(kernel, false, &pool).sum_rho / 2;
+  fmt::print(
+      "\n| {} samples x RGB, profile and curve | AutoDiffCostFunction a sample | steps | streamed, same start | steps "
+      "| "
+      "ratio | ratio a step | cost over the baseline's |\n|---|---|---|---|---|---|---|---|\n",
+      samples.size());
+  const double slow_step = slow / static_cast<double>(summary.iterations.size()),
+               fast_step = fast / std::max(1, solution.iterations);
+  fmt::print("| 1 | {:.2f} s | {} | {:.4f} s | {} | {:.0f} | {:.0f} | {:.6f} |\n", slow, summary.iterations.size(),
+             fast, solution.iterations, slow / fast, slow_step / fast_step, cost / summary.final_cost);
+}
+
+}  // namespace
+}  // namespace lobefit
+
+int main(int argc, char** argv) {
+  FLAGS_minloglevel = google::GLOG_FATAL;
+  const bool quick = argc > 1 && std::string(argv[1]) == "--quick";
+  lobefit::Passes(quick ? 20 : 2);
+  lobefit::AgainstAutoDiff(quick ? 40 : 10);
+  return 0;
+}
