@@ -9,6 +9,11 @@
 namespace lobefit {
 namespace {
 
+DirectionalDiffuse InterfaceOf(double ior) {
+  const double parameters[] = {ior, 1};
+  return DirectionalDiffuse(Diffuse::kInterfaced, parameters);
+}
+
 // Of a lobe 0.01 wide off by 1e-9 of the derivative; rounding adds 1e-11.
 constexpr double kIndexStep = 2e-6;
 
@@ -33,6 +38,7 @@ CoatStage::CoatStage(const KernelModel& model, std::size_t coat, bool gradient)
       ior_(model.lobes[coat].fresnel[0]),
       refracted_(model.lobes[coat].kind.fresnel == Fresnel::kCoatRefracted),
       gradient_(gradient),
+      interface_(InterfaceOf(ior_)),
       arrays_((gradient ? 3 : 1) * model.channels * kBlock),
       clear_(kBlock),
       path_(kBlock),
@@ -57,18 +63,22 @@ DirectionArrays CoatStage::Enter(const DirectionArrays& outside) {
   if (refracted_ && gradient_ && !below_.lobes.empty()) DifferenceIndex(outside);
   std::fill(clear_.begin(), clear_.end(), 0.0);
   std::fill(path_.begin(), path_.end(), 2.0);
+  // T_i T_o and the derivative of its logarithm by the SIMD path of the interfaced part.
+  interface_.EvaluateInterfaced(outside.wi_z, outside.wo_z, count_, clear_.data(), dlog_clear_.data());
   for (std::size_t i = 0; i < count_; ++i) {
-    const CoatPassage passage = PassThroughCoat(ior_, refracted_, DirectionIn(outside, i), DirectionOut(outside, i));
-    clear_[i] = passage.clear;
-    path_[i] = passage.path;
-    dlog_clear_[i] = passage.dlog_clear_dior;
-    dpath_[i] = passage.dpath_dior;
-    if (!refracted_) continue;
-    const Vec3 &wi = passage.inside_i, &wo = passage.inside_o;
+    clear_[i] /= lambert_;
+    dlog_clear_[i] -= dlambert_dior_ / lambert_;
+  }
+  if (!refracted_) return outside;
+  for (std::size_t i = 0; i < count_; ++i) {
+    Vec3 dwi, dwo;
+    const Vec3 wi = Refracted(DirectionIn(outside, i), ior_, &dwi),
+               wo = Refracted(DirectionOut(outside, i), ior_, &dwo);
+    path_[i] = 1 / wi.z + 1 / wo.z;
+    dpath_[i] = -dwi.z / (wi.z * wi.z) - dwo.z / (wo.z * wo.z);
     const double all[6] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
     for (std::size_t k = 0; k < 6; ++k) inside_[k][i] = all[k];
   }
-  if (!refracted_) return outside;
   return {inside_[0].data(),
           inside_[1].data(),
           inside_[2].data(),

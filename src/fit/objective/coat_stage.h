@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/fit/objective/kernel.h"
 
 namespace lobefit {
@@ -37,8 +38,9 @@ class CoatStage {
   std::size_t coat_, count_ = 0;
   double ior_, lambert_, dlambert_dior_ = 0;
   bool refracted_, gradient_;
-  KernelModel below_;           // its lobes alone
-  std::vector<double> arrays_;  // of each channel: through, and its gradient
+  DirectionalDiffuse interface_;  // of the coat's index
+  KernelModel below_;             // its lobes alone
+  std::vector<double> arrays_;    // of each channel: through, and its gradient
   std::vector<double> clear_, path_, dlog_clear_, dpath_, inside_[6];
   std::vector<std::vector<double>> by_ior_;  // [channel] of f_r of the lobes below
 };

@@ -86,16 +86,14 @@ class Block {
       *array = {next, count * kBlock};
       next += count * kBlock;
     }
-    if (!model.alignment.angles.empty()) {
-      if (gradient) {
-        straight_ = std::make_unique<KernelModel>(model);
-        straight_->alignment = {};
-        straight_->gains = false;
-        straight_->offset.clear();
-        for (std::size_t k = 0; k < 6; ++k) moved_samples_.direction[k] = moved_.data() + k * kBlock;
-        moved_samples_.count = kBlock;
-        probe_ = std::make_unique<Block>(moved_samples_, *straight_, false);
-      }
+    if (!model.alignment.angles.empty() && gradient) {
+      straight_ = std::make_unique<KernelModel>(model);
+      straight_->alignment = {};
+      straight_->gains = false;
+      straight_->offset.clear();
+      for (std::size_t k = 0; k < 6; ++k) moved_samples_.direction[k] = moved_.data() + k * kBlock;
+      moved_samples_.count = kBlock;
+      probe_ = std::make_unique<Block>(moved_samples_, *straight_, false);
     }
     if (const std::size_t coat = CoatOf(model); coat < lobes) coat_.emplace(model, coat, gradient);
     std::fill(diffuse_.begin(), diffuse_.end(), coat_ ? coat_->lambert() : kInvPi);
@@ -412,7 +410,12 @@ class Block {
       arrays::Contract(curve_basis(l), lobe.fresnel.data() + c * size, size, 1, padded_, kBlock, value);
       return {0, 1, value};
     }
-    for (std::size_t i = 0; i < padded_; ++i) {
+    // A coat's index is common to the channels.
+    const bool again = IsCoat(lobe.kind.fresnel) && c > 0 && lobe.mean == nullptr;
+    if (again) std::copy_n(factor_.data() + l * kBlock, padded_, value);
+    if (again && gradient_)
+      std::copy_n(factor_gradient(0, first_fresnel_[l]), size * kBlock, factor_gradient(c, first_fresnel_[l]));
+    for (std::size_t i = 0; !again && i < padded_; ++i) {
       double dF[kMaxFresnelParameters];
       double* by_argument = gradient_ && lobe.mean != nullptr
                                 ? &factor_by_argument_[(c * model_.lobes.size() + l) * kBlock + i]
@@ -423,11 +426,6 @@ class Block {
     }
     return {0, 1, value};
   }
-  static bool IsLinear(const KernelLobe& lobe) {
-    return lobe.kind.fresnel == Fresnel::kSchlick || lobe.kind.fresnel == Fresnel::kNone;
-  }
-  // At a point: of a mean the argument moves with the shape.
-  static bool IsCurve(const KernelLobe& lobe) { return lobe.kind.fresnel == Fresnel::kCurve && lobe.mean == nullptr; }
   double* curve_basis(std::size_t l) { return curve_basis_.data() + l * kMaxFresnelParameters * kBlock; }
   Factor LinearFactor(std::size_t l, std::size_t c) const {
     const KernelLobe& lobe = model_.lobes[l];
