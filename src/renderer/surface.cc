@@ -54,7 +54,8 @@ class SurfaceEvaluator {
   explicit SurfaceEvaluator(const Surface& surface) : surface_(surface) {
     for (const SurfaceLobe& lobe : surface.lobes) {
       frames_.emplace_back(lobe);
-      const bool needs_albedo = surface.energy_compensation || surface.layering == Surface::Layering::kAlbedo;
+      const bool needs_albedo = surface.energy_compensation || surface.layering == Surface::Layering::kAlbedo ||
+                                surface.layering == Surface::Layering::kCoat;
       albedos_.push_back(needs_albedo ? std::make_unique<const IsotropicAlbedo>(
                                             std::sqrt(lobe.widths.alpha_1 * lobe.widths.alpha_2), surface.albedo_side)
                                       : nullptr);
@@ -65,8 +66,15 @@ class SurfaceEvaluator {
     std::fill_n(values, surface_.diffuse.size(), 0.0);
     if (!(wi.z > 0) || !(wo.z > 0)) return;
     const double cos_d = Dot(wi, HalfVector(wi, wo));
-    for (std::size_t l = 0; l < surface_.lobes.size(); ++l) AddLobe(l, wi, wo, cos_d, values);
+    const bool coat = surface_.layering == Surface::Layering::kCoat;
+    for (std::size_t l = 0; l < surface_.lobes.size(); ++l) {
+      if (!coat || l != surface_.layer_lobe) AddLobe(l, wi, wo, cos_d, values);
+    }
     AddDiffuse(wi, wo, cos_d, values);
+    if (!coat) return;
+    const double left = 1 - LayerAlbedo(Dot(frames_[surface_.layer_lobe].normal, wo));
+    for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) values[c] *= left;
+    AddLobe(surface_.layer_lobe, wi, wo, cos_d, values);
   }
 
  private:

@@ -57,8 +57,8 @@ struct Surface {
   // Energy-preserving Oren-Nayar, as MaterialX' GLSL evaluates it: directions more than 90 degrees apart count as 90.
   double diffuse_roughness = 0;
   // What dims the diffuse part: nothing; the largest channel of Schlick's term of `layer` (glTF); the mean albedo of
-  // lobes[layer_lobe] (OpenPBR in MaterialX).
-  enum class Layering { kNone, kSchlick, kAlbedo };
+  // lobes[layer_lobe] (OpenPBR in MaterialX). kCoat: that albedo dims all other lobes too (MaterialX' layer).
+  enum class Layering { kNone, kSchlick, kAlbedo, kCoat };
   Layering layering = Layering::kNone;
   SurfaceFresnel layer;
   std::size_t layer_lobe = 0;

@@ -157,6 +157,39 @@ TEST_F(TargetModel, MaterialX) {
       3e-3, 0.1);
 }
 
+// MaterialX' layer: the coat and, less its albedo seen from the viewer, what lies below, whose colours have the light's way
+// in at normal incidence and the absorption both ways.
+TEST_F(TargetModel, MaterialXCoat) {
+  SyntheticCase coated;
+  coated.model.lobes = {{Ndf::kGgx}, {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered}};
+  const double ior = 1.6, alpha = 0.3, coat_alpha = 0.1, f0 = std::pow((ior - 1) / (ior + 1), 2);
+  const std::vector<double> tau = {0, 0.1, 0.3}, rho = {0.3, 0.2, 0.1}, base = {0.6, 0.4, 0.2};
+  coated.values = {{alpha}, {alpha},         {0}, {0}, {0}, base, {coat_alpha}, {coat_alpha}, {0}, {0},
+                   {0},     {ior, ior, ior}, tau, rho};
+  const std::string text = Export(coated, "materialx", "sample.mtlx");
+  EXPECT_NE(text.find("<layer name=\"sample_coated\""), std::string::npos);
+  EXPECT_NE(text.find("<input name=\"scatter_mode\" type=\"string\" value=\"R\"/>"), std::string::npos);
+  ExpectSame(
+      [&](const Vec3& wi, const Vec3& wo) {
+        const double c = Dot(wi, Normalized(wi + wo));
+        const auto frame = TurnedFrame(0, {0, 0, 1});
+        const double e = LobeAlbedo(alpha, wo.z), coat_e = LobeAlbedo(coat_alpha, wo.z);
+        const double F = FresnelDielectric(c, ior), lost = (1 - coat_e) / coat_e;
+        const double coat = LobeFactor(frame, coat_alpha, coat_alpha, wi, wo, "mean") * F * (1 + F * lost);
+        const double left = 1 - LobeAlbedo(coat_alpha, wo.z, f0) * (1 + lost * FresnelDielectric(wo.z, ior));
+        Rgb3 f = {};
+        for (std::size_t j = 0; j < 3; ++j) {
+          const double kept = (1 - f0) * std::exp(-2 * tau[j]);
+          const double fresnel = kept * SchlickFresnel(base[j], c);
+          const double below = LobeFactor(frame, alpha, alpha, wi, wo, "mean") * fresnel * (1 + fresnel * (1 - e) / e) +
+                               rho[j] * std::exp(-2 * tau[j]) / kPi;
+          f[j] = coat + left * below;
+        }
+        return f;
+      },
+      3e-3, 0.1);
+}
+
 // An edge tint over a rough diffuse part.
 SyntheticCase Tinted() {
   SyntheticCase synthetic = test::Turned();

@@ -40,7 +40,9 @@ class MaterialXReader {
     } else {
       surface.masking = SurfaceMasking::kMeanAlpha;
       surface.energy_compensation = true;
-      Add(Source(shader, "bsdf"), 1, 0, &surface);
+      pugi::xml_node bsdf = Source(shader, "bsdf");
+      if (std::string_view(bsdf.name()) == "layer") bsdf = AddCoat(bsdf, &surface);
+      Add(bsdf, 1, 0, &surface);
     }
     ImportedMaterial result = {type == "surface" ? "materialx" : "openpbr",
                                {{"R", "G", "B"}, {}},
@@ -190,13 +192,27 @@ class MaterialXReader {
       surface->diffuse_roughness = roughness;
       for (std::size_t c = 0; c < 3; ++c) surface->diffuse[c] += own * color[c];
       if (Input(node, "normal")) surface->diffuse_normal = Normalized(VectorInput(node, "normal", {0, 0, 1}));
-    } else if (type == "generalized_schlick_bsdf" || type == "conductor_bsdf") {
+    } else if (type == "generalized_schlick_bsdf" || type == "conductor_bsdf" || type == "dielectric_bsdf") {
       AddLobe(node, own, surface);
     } else {
-      xml_.Fail(node, fmt::format("the BSDF <{}> is not understood; conductor_bsdf, generalized_schlick_bsdf, "
-                                  "oren_nayar_diffuse_bsdf, add and mix are",
+      xml_.Fail(node, fmt::format("the BSDF <{}> is not understood; conductor_bsdf, dielectric_bsdf, "
+                                  "generalized_schlick_bsdf, oren_nayar_diffuse_bsdf, add and mix are, and a layer as "
+                                  "the last of all",
                                   Excerpt(type)));
     }
+  }
+
+  // The clear coat on top of all other BSDFs. Returns what lies below.
+  pugi::xml_node AddCoat(pugi::xml_node layer, Surface* surface) const {
+    CheckInputs(layer);
+    const pugi::xml_node top = Source(layer, "top");
+    if (std::string_view(top.name()) != "dielectric_bsdf")
+      xml_.Fail(layer, "a layer is understood with a dielectric_bsdf as its top only");
+    CheckInputs(top);
+    AddLobe(top, 1, surface);
+    surface->layering = Surface::Layering::kCoat;
+    surface->layer_lobe = surface->lobes.size() - 1;
+    return Source(layer, "base");
   }
 
   void AddLobe(pugi::xml_node node, double weight, Surface* surface) const {
@@ -206,7 +222,12 @@ class MaterialXReader {
     lobe.widths = {std::clamp(roughness[0], 1e-6, 1.0), std::clamp(roughness[1], 1e-6, 1.0)};
     lobe.normal = Normalized(VectorInput(node, "normal", {0, 0, 1}));
     lobe.rotation = RotationOf(VectorInput(node, "tangent", {1, 0, 0}), lobe.normal);
-    if (std::string_view(node.name()) == "conductor_bsdf") {
+    if (std::string_view(node.name()) == "dielectric_bsdf") {
+      const double ior = Real(node, "ior", 1.5);
+      if (!(ior >= 1)) xml_.Fail(node, fmt::format("its ior is {:g}; indices of at least 1 are understood", ior));
+      lobe.fresnel.kind = SurfaceFresnel::Kind::kDielectric;
+      lobe.fresnel.eta = {ior, ior, ior};
+    } else if (std::string_view(node.name()) == "conductor_bsdf") {
       lobe.fresnel.kind = SurfaceFresnel::Kind::kConductor;
       lobe.fresnel.eta = ColorSpectrum(node, "ior", {0.183, 0.421, 1.373});
       lobe.fresnel.k = ColorSpectrum(node, "extinction", {3.424, 2.346, 1.770});

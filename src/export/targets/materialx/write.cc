@@ -1,6 +1,7 @@
 #include "lobefit/export/targets/materialx/write.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -15,16 +16,20 @@ namespace lobefit {
 namespace {
 
 std::string LobeNode(const std::string& name, const SurfaceLobe& lobe, const FrameText& frame) {
-  const bool conductor = lobe.fresnel.kind == SurfaceFresnel::Kind::kConductor;
-  const char* node = conductor ? "conductor_bsdf" : "generalized_schlick_bsdf";
+  const bool conductor = lobe.fresnel.kind == SurfaceFresnel::Kind::kConductor,
+             coat = lobe.fresnel.kind == SurfaceFresnel::Kind::kDielectric;
+  const char* node = conductor ? "conductor_bsdf" : coat ? "dielectric_bsdf" : "generalized_schlick_bsdf";
   const auto color = [](const char* input, const Spectrum& value) {
     return fmt::format("    <input name=\"{}\" type=\"color3\" value=\"{}\"/>\n", input, Numbers9(value, ", "));
   };
   return fmt::format("  <{} name=\"{}\" type=\"BSDF\">\n", node, name) +
-         (conductor ? color("ior", lobe.fresnel.eta) + color("extinction", lobe.fresnel.k)
-                    : color("color0", lobe.fresnel.f0) +
-                          (lobe.fresnel.f82.empty() ? "" : color("color82", lobe.fresnel.f82)) +
-                          color("color90", lobe.fresnel.f90)) +
+         (coat        ? fmt::format("    <input name=\"ior\" type=\"float\" value=\"{}\"/>\n"
+                                           "    <input name=\"scatter_mode\" type=\"string\" value=\"R\"/>\n",
+                                    Number9(lobe.fresnel.eta[0]))
+          : conductor ? color("ior", lobe.fresnel.eta) + color("extinction", lobe.fresnel.k)
+                      : color("color0", lobe.fresnel.f0) +
+                            (lobe.fresnel.f82.empty() ? "" : color("color82", lobe.fresnel.f82)) +
+                            color("color90", lobe.fresnel.f90)) +
          fmt::format(
              "    <input name=\"roughness\" type=\"vector2\" value=\"{}, {}\"/>\n"
              "    <input name=\"normal\" type=\"vector3\" nodename=\"{}\"/>\n"
@@ -33,12 +38,47 @@ std::string LobeNode(const std::string& name, const SurfaceLobe& lobe, const Fra
              Number9(lobe.widths.alpha_1), Number9(lobe.widths.alpha_2), frame.normal, frame.tangent, node);
 }
 
+// A layer dims what lies below by the coat's albedo seen from the viewer, which has no factor for the light's way in:
+// the lobes below have it in their colours, at normal incidence. A Lambertian part below has it in the mean already.
+void PutBelowCoat(const FittedBrdf& fit, Surface* surface) {
+  const Model& model = fit.material().model;
+  const std::size_t coat = CoatOf(model);
+  if (coat == model.lobes.size()) return;
+  const std::vector<double>& ior = fit.material().parameters[FirstFresnel(model, coat)].values;
+  const std::vector<double>& tau = fit.material().parameters[FirstFresnel(model, coat) + 1].values;
+  const double enters = 1 - fit.Fresnel(coat, 0, 1);
+  std::size_t place = 0;
+  for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
+    if (fit.lobes()[l].retro) continue;
+    SurfaceFresnel& fresnel = surface->lobes[place].fresnel;
+    if (l == coat) {
+      surface->layering = Surface::Layering::kCoat;
+      surface->layer_lobe = place;
+      fresnel.kind = SurfaceFresnel::Kind::kDielectric;
+      fresnel.eta = Spectrum(fresnel.f0.size(), ior[0]);
+    } else if (fresnel.kind == SurfaceFresnel::Kind::kSchlick) {
+      for (std::size_t c = 0; c < fresnel.f0.size(); ++c) {
+        const double kept = enters * std::exp(-2 * tau[tau.size() == 1 ? 0 : c]);
+        fresnel.f0[c] *= kept;
+        fresnel.f90[c] *= kept;
+      }
+    }
+    ++place;
+  }
+  for (std::size_t c = 0; c < surface->diffuse.size(); ++c)
+    surface->diffuse[c] *= std::exp(-2 * tau[tau.size() == 1 ? 0 : c]);
+}
+
 std::vector<Carried> CarriesMaterialX(const FittedBrdf& fit) {
   std::vector<Carried> rows = CarriesLobes(fit, Masking::kImplicit, kMaterialXMasking);
+  Mark(&rows, Feature::kCoat, Carries::kApproximately,
+       "by a layer, which dims what lies below for the viewer's direction only, and refracts nothing");
+  if (CoatOf(fit.material().model) < fit.lobes().size())
+    Mark(&rows, Feature::kSecondLobe, Carries::kApproximately, "what the coat lets in at the normal is in its colour");
   MarkOrenNayar(fit, &rows);
   const bool own = std::all_of(fit.lobes().begin(), fit.lobes().end(), [](const FittedLobe& lobe) {
     const Fresnel fresnel = lobe.choices.fresnel;
-    return fresnel != Fresnel::kDielectric && fresnel != Fresnel::kCurve;
+    return fresnel != Fresnel::kDielectric && fresnel != Fresnel::kCurve && !IsCoat(fresnel);
   });
   if (!own) {
     Mark(&rows, Feature::kFresnel, Carries::kApproximately,
@@ -70,7 +110,7 @@ WrittenFiles WriteMaterialX(const FittedBrdf& fit, const WriteContext& context) 
     const std::string name = fmt::format("{}_lobe{}", id, l + 1);
     const FrameText frame = FrameNodes(name, surface.lobes[l].rotation, surface.lobes[l].normal);
     nodes += frame.nodes + LobeNode(name, surface.lobes[l], frame);
-    add(name);
+    if (surface.layering != Surface::Layering::kCoat || l != surface.layer_lobe) add(name);
   }
   if (fit.HasDiffuse() || surface.lobes.empty()) {
     nodes += fmt::format(
@@ -80,6 +120,14 @@ WrittenFiles WriteMaterialX(const FittedBrdf& fit, const WriteContext& context) 
         "    <input name=\"energy_compensation\" type=\"boolean\" value=\"true\"/>\n  </oren_nayar_diffuse_bsdf>\n",
         id, Numbers9(surface.diffuse, ", "), Number9(surface.diffuse_roughness));
     add(id + "_diffuse");
+  }
+  if (surface.layering == Surface::Layering::kCoat) {
+    nodes += fmt::format(
+        "  <layer name=\"{0}_coated\" type=\"BSDF\">\n    <input name=\"top\" type=\"BSDF\" "
+        "nodename=\"{0}_lobe{1}\"/>\n"
+        "    <input name=\"base\" type=\"BSDF\" nodename=\"{2}\"/>\n  </layer>\n",
+        id, surface.layer_lobe + 1, sum);
+    sum = id + "_coated";
   }
   nodes += fmt::format(
       "  <surface name=\"{0}_surface\" type=\"surfaceshader\">\n    <input name=\"bsdf\" type=\"BSDF\" "
@@ -108,6 +156,7 @@ Surface MaterialXSurface(const FittedBrdf& fit) {
   }
   surface.diffuse = DiffuseOf(fit);
   surface.diffuse_roughness = DiffuseRoughnessOf(fit);
+  PutBelowCoat(fit, &surface);
   return surface;
 }
 
