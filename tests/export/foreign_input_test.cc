@@ -79,6 +79,28 @@ std::string Conductor(const std::string& inputs, const std::string& more = "") {
          more + "</materialx>";
 }
 
+// A layer over a diffuse part; `top` is the node of that name.
+std::string Layered(const std::string& top) {
+  return "<materialx version=\"1.39\">" + top +
+         "<oren_nayar_diffuse_bsdf name=\"d\" type=\"BSDF\"/><layer name=\"l\" type=\"BSDF\"><input name=\"top\" "
+         "type=\"BSDF\" nodename=\"top\"/><input name=\"base\" type=\"BSDF\" nodename=\"d\"/></layer><surface "
+         "name=\"s\" type=\"surfaceshader\"><input name=\"bsdf\" type=\"BSDF\" nodename=\"l\"/></surface>"
+         "<surfacematerial name=\"m\" type=\"material\"><input name=\"surfaceshader\" type=\"surfaceshader\" "
+         "nodename=\"s\"/></surfacematerial></materialx>";
+}
+std::string Dielectric(const std::string& inputs) {
+  return "<dielectric_bsdf name=\"top\" type=\"BSDF\">" + inputs + "</dielectric_bsdf>";
+}
+
+TEST(MaterialXLayers, AreACoatOfADielectricOrErrors) {
+  EXPECT_EQ(ErrorOf(Layered(Dielectric(Input("ior", "float", "1.6")))), "no error");
+  EXPECT_THAT(ErrorOf(Layered(Dielectric(Input("ior", "float", "0.7")))), HasSubstr("its ior is 0.7"));
+  EXPECT_THAT(ErrorOf(Layered(Dielectric(Input("scatter_mode", "string", "RT")))), HasSubstr("'scatter_mode'"));
+  EXPECT_THAT(ErrorOf(Layered(Dielectric(Input("tint", "color3", "0.5, 0.5, 0.5")))), HasSubstr("'tint'"));
+  EXPECT_THAT(ErrorOf(Layered("<conductor_bsdf name=\"top\" type=\"BSDF\"/>")), HasSubstr("as its top only"));
+  EXPECT_THAT(ErrorOf(Layered("")), HasSubstr("names no node"));
+}
+
 TEST(MaterialXInputs, CountOrAreErrors) {
   EXPECT_EQ(ErrorOf(Conductor(Input("thinfilm_thickness", "float", "0"))), "no error");
   EXPECT_THAT(ErrorOf(Conductor(Input("thinfilm_thickness", "float", "500"))), HasSubstr("'thinfilm_thickness'"));
