@@ -9,8 +9,16 @@ namespace lobefit {
 
 GltfMaterial GltfOf(const FittedBrdf& fit) {
   GltfMaterial material;
-  const SurfaceLobe lobe = LobeOf(fit, StrongestLobe(fit), 1);
-  const Spectrum diffuse = DiffuseOf(fit), f0 = lobe.fresnel.f0;
+  SurfaceLobe lobe = LobeOf(fit, StrongestLobe(fit), 1);
+  Spectrum diffuse = DiffuseOf(fit);
+  const std::size_t coat = CoatOf(fit.material().model);
+  if (coat < fit.lobes().size() && fit.lobes().size() > 1) {
+    const Widths& widths = fit.lobes()[coat].widths;
+    material.clearcoat = std::min(1.0, fit.Fresnel(coat, 0, 1) / kDefaultDielectric);
+    material.clearcoat_roughness = std::sqrt(std::sqrt(widths.alpha_1 * widths.alpha_2));
+    DimBelowCoat(fit, coat, &lobe.fresnel, &diffuse);
+  }
+  const Spectrum f0 = lobe.fresnel.f0;
   material.roughness = GltfRoughness(lobe.widths);
   material.rotation = lobe.rotation;
   material.normal = lobe.normal;
@@ -48,6 +56,18 @@ Surface GltfSurface(const GltfMaterial& material) {
     surface.diffuse[c] = dielectric * material.base_color[c];
   }
   surface.lobes.push_back(lobe);
+  if (material.clearcoat > 0) {
+    // Of the surface's own normal: a normal texture does not tilt it.
+    const double alpha = std::max(1e-6, material.clearcoat_roughness * material.clearcoat_roughness);
+    SurfaceLobe coat;
+    coat.widths = {alpha, alpha};
+    coat.weight = material.clearcoat;
+    coat.fresnel.f0 = Spectrum(3, kDefaultDielectric);
+    coat.fresnel.f90 = Spectrum(3, 1.0);
+    surface.lobes.push_back(coat);
+    surface.coating = Surface::Coating::kFresnel;
+    surface.coat_lobe = 1;
+  }
   surface.layering = Surface::Layering::kSchlick;
   surface.diffuse_normal = material.normal;
   return surface;

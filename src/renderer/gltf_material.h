@@ -1,4 +1,4 @@
-// The material of glTF 2.0 with KHR_materials_anisotropy, KHR_materials_ior and KHR_materials_specular.
+// The material of glTF 2.0 with KHR_materials_anisotropy, _clearcoat, _ior and _specular.
 #pragma once
 
 #include "lobefit/renderer/surface.h"
@@ -14,7 +14,8 @@ struct GltfMaterial {
   double ior = 1.5;
   double specular = 1;
   Color3 specular_color = {1, 1, 1};
-  Vec3 normal = {0, 0, 1};
+  Vec3 normal = {0, 0, 1};                        // the coat's is the surface's own
+  double clearcoat = 0, clearcoat_roughness = 0;  // an index of 1.5; the roughness is the root of alpha
 };
 GltfMaterial GltfOf(const FittedBrdf& fit);
 // [glTF 2.0 appendix B and the extensions]: Schlick's term, height-correlated masking of both widths, the diffuse part

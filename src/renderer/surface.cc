@@ -55,7 +55,7 @@ class SurfaceEvaluator {
     for (const SurfaceLobe& lobe : surface.lobes) {
       frames_.emplace_back(lobe);
       const bool needs_albedo = surface.energy_compensation || surface.layering == Surface::Layering::kAlbedo ||
-                                surface.layering == Surface::Layering::kCoat;
+                                surface.coating == Surface::Coating::kAlbedo;
       albedos_.push_back(needs_albedo ? std::make_unique<const IsotropicAlbedo>(
                                             std::sqrt(lobe.widths.alpha_1 * lobe.widths.alpha_2), surface.albedo_side)
                                       : nullptr);
@@ -66,15 +66,18 @@ class SurfaceEvaluator {
     std::fill_n(values, surface_.diffuse.size(), 0.0);
     if (!(wi.z > 0) || !(wo.z > 0)) return;
     const double cos_d = Dot(wi, HalfVector(wi, wo));
-    const bool coat = surface_.layering == Surface::Layering::kCoat;
+    const bool coated = surface_.coating != Surface::Coating::kNone;
     for (std::size_t l = 0; l < surface_.lobes.size(); ++l) {
-      if (!coat || l != surface_.layer_lobe) AddLobe(l, wi, wo, cos_d, values);
+      if (!coated || l != surface_.coat_lobe) AddLobe(l, wi, wo, cos_d, values);
     }
     AddDiffuse(wi, wo, cos_d, values);
-    if (!coat) return;
-    const double left = 1 - LayerAlbedo(Dot(frames_[surface_.layer_lobe].normal, wo));
-    for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) values[c] *= left;
-    AddLobe(surface_.layer_lobe, wi, wo, cos_d, values);
+    if (!coated) return;
+    const SurfaceLobe& coat = surface_.lobes[surface_.coat_lobe];
+    const double cos_o = Dot(coat.normal, wo);
+    const bool by_albedo = surface_.coating == Surface::Coating::kAlbedo;
+    const double dims = by_albedo ? LayerAlbedo(surface_.coat_lobe, cos_o) : coat.weight * coat.fresnel(0, cos_o);
+    for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) values[c] *= 1 - dims;
+    AddLobe(surface_.coat_lobe, wi, wo, by_albedo ? cos_d : cos_o, values);
   }
 
  private:
@@ -100,7 +103,7 @@ class SurfaceEvaluator {
       for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) largest = std::max(largest, surface_.layer(c, cos_d));
       left = 1 - largest;
     } else if (surface_.layering == Surface::Layering::kAlbedo) {
-      left = 1 - LayerAlbedo(Dot(frames_[surface_.layer_lobe].normal, wo));
+      left = 1 - LayerAlbedo(surface_.layer_lobe, Dot(frames_[surface_.layer_lobe].normal, wo));
     }
     for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) {
       values[c] += Scattered(surface_.diffuse[c], wi, wo, cos_i, cos_o) * left * cos_i / wi.z;
@@ -116,12 +119,12 @@ class SurfaceEvaluator {
     return f.single + f.multiple;
   }
 
-  double LayerAlbedo(double cos_o) const {
-    const IsotropicAlbedo& albedo = *albedos_[surface_.layer_lobe];
+  double LayerAlbedo(std::size_t lobe, double cos_o) const {
+    const IsotropicAlbedo& albedo = *albedos_[lobe];
     const double mu = std::max(cos_o, 1e-6);
-    const double f0 = surface_.lobes[surface_.layer_lobe].fresnel(0, 1);
+    const double f0 = surface_.lobes[lobe].fresnel(0, 1);
     const double lost = 1 / albedo(mu, 1, 1) - 1;
-    return std::min(1.0, albedo(mu, f0, 1) * (1 + lost * surface_.lobes[surface_.layer_lobe].fresnel(0, mu)));
+    return std::min(1.0, albedo(mu, f0, 1) * (1 + lost * surface_.lobes[lobe].fresnel(0, mu)));
   }
 
   Surface surface_;
@@ -273,7 +276,9 @@ std::size_t StrongestLobe(const FittedBrdf& fit) {
   double largest = -1;
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
     double sum = 0;
-    for (std::size_t c = 0; c < fit.material().channels.size() && !fit.lobes()[l].retro; ++c) {
+    // A coat is no lobe of what lies below, unless it is the only one.
+    const bool left_out = fit.lobes()[l].retro || (IsCoat(fit.lobes()[l].choices.fresnel) && fit.lobes().size() > 1);
+    for (std::size_t c = 0; c < fit.material().channels.size() && !left_out; ++c) {
       sum += fit.Fresnel(l, c, 1);
     }
     if (sum > largest) largest = sum, strongest = l;
@@ -282,6 +287,19 @@ std::size_t StrongestLobe(const FittedBrdf& fit) {
 }
 
 Spectrum DiffuseOf(const FittedBrdf& fit) { return fit.IsGrey() ? Spectrum(3, fit.diffuse()[0]) : fit.diffuse(); }
+
+void DimBelowCoat(const FittedBrdf& fit, std::size_t coat, SurfaceFresnel* fresnel, Spectrum* diffuse) {
+  const std::vector<double>& tau = fit.material().parameters[FirstFresnel(fit.material().model, coat) + 1].values;
+  const double enters = 1 - fit.Fresnel(coat, 0, 1);
+  for (std::size_t c = 0; c < ChannelsOf(fit); ++c) {
+    const double kept = std::exp(-2 * tau[ChannelOf(fit, c)]);
+    if (fresnel != nullptr) {
+      fresnel->f0[c] *= enters * kept;
+      fresnel->f90[c] *= enters * kept;
+    }
+    if (diffuse != nullptr) (*diffuse)[c] *= kept;
+  }
+}
 
 Shares SharesOf(const FittedBrdf& fit) {
   Shares shares;

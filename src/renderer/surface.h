@@ -57,11 +57,17 @@ struct Surface {
   // Energy-preserving Oren-Nayar, as MaterialX' GLSL evaluates it: directions more than 90 degrees apart count as 90.
   double diffuse_roughness = 0;
   // What dims the diffuse part: nothing; the largest channel of Schlick's term of `layer` (glTF); the mean albedo of
-  // lobes[layer_lobe] (OpenPBR in MaterialX). kCoat: that albedo dims all other lobes too (MaterialX' layer).
-  enum class Layering { kNone, kSchlick, kAlbedo, kCoat };
+  // lobes[layer_lobe] (OpenPBR in MaterialX).
+  enum class Layering { kNone, kSchlick, kAlbedo };
   Layering layering = Layering::kNone;
   SurfaceFresnel layer;
   std::size_t layer_lobe = 0;
+  // lobes[coat_lobe] lies over all others and the diffuse part, and dims them for the viewer's direction: by its mean
+  // albedo (MaterialX' layer), or by its Fresnel term at that direction, which is its own reflectance too (glTF's clear
+  // coat).
+  enum class Coating { kNone, kAlbedo, kFresnel };
+  Coating coating = Coating::kNone;
+  std::size_t coat_lobe = 0;
 };
 
 // f_r in the channels of the surface.
@@ -91,10 +97,15 @@ SurfaceLobe LobeOf(const FittedBrdf& fit, std::size_t lobe, double weight);
 // The index whose Fresnel term is nearest to that of the fit's lobe over `share`, all channels; the fit's own where it
 // is a conductor's and the share is 1.
 SurfaceFresnel ConductorFresnelOf(const FittedBrdf& fit, std::size_t lobe, double share);
-// The lobe with the largest reflectance, of those about the mirror direction where there is one.
+// The lobe with the largest reflectance, of those about the mirror direction where there is one, below a coat where
+// there is another.
 std::size_t StrongestLobe(const FittedBrdf& fit);
 // The diffuse albedo; grey three times.
 Spectrum DiffuseOf(const FittedBrdf& fit);
+// For renderers whose coats dim what lies below for the viewer's direction only: the light's way in at normal incidence
+// and the absorption both ways go into a lobe's colour; a Lambertian part has the way in in its mean, and takes the
+// absorption. Null: not wanted.
+void DimBelowCoat(const FittedBrdf& fit, std::size_t coat, SurfaceFresnel* fresnel, Spectrum* diffuse);
 
 // Shares of a random choice between the diffuse part and the lobes (pbrt's mix, Mitsuba's blendbsdf): the diffuse part
 // gets its largest albedo, the lobes share the rest by their reflectance. A share times a component is the component.

@@ -162,11 +162,17 @@ TEST(GltfMembers, CountOrAreErrors) {
   EXPECT_EQ(ValuesOf(defaults), ValuesOf(Import(gltf("{\"pbrMetallicRoughness\": {\"roughnessFactor\": 1}}"))));
   EXPECT_THAT(ErrorOf(gltf("{\"extensions\": {\"KHR_materials_pbrSpecularGlossiness\": {}}}")),
               HasSubstr("'KHR_materials_pbrSpecularGlossiness'"));
-  for (const char* extension : {"KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_transmission"}) {
+  for (const char* extension : {"KHR_materials_iridescence", "KHR_materials_sheen", "KHR_materials_transmission"}) {
     EXPECT_THAT(ErrorOf(gltf(std::string("{\"extensions\": {\"") + extension + "\": {}}}")), HasSubstr(extension));
   }
   EXPECT_THAT(ErrorOf(gltf("{\"extensions\": {\"KHR_materials_anisotropy\": {\"anisotropyTexture\": {}}}}")),
               HasSubstr("has textures ('anisotropyTexture')"));
+  EXPECT_THAT(ErrorOf(gltf("{\"extensions\": {\"KHR_materials_clearcoat\": {\"clearcoatNormalTexture\": {}}}}")),
+              HasSubstr("has textures ('clearcoatNormalTexture')"));
+  const std::string coat =
+      "{\"extensions\": {\"KHR_materials_clearcoat\": {\"clearcoatFactor\": 1, "
+      "\"clearcoatRoughnessFactor\": 0.3}}}";
+  EXPECT_NE(ValuesOf(Import(gltf(coat))), ValuesOf(defaults));
   EXPECT_THAT(ErrorOf(gltf("{\"occlusionTexture\": {}}")), HasSubstr("has textures ('occlusionTexture')"));
   EXPECT_THAT(ErrorOf(gltf("{\"alphaMode\": \"BLEND\"}")), HasSubstr("not opaque"));
   EXPECT_THAT(ErrorOf(gltf("{\"emissiveFactor\": [1, 0, 0]}")), HasSubstr("emits"));

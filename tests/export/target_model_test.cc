@@ -286,6 +286,36 @@ TEST_F(TargetModel, Gltf) {
       5e-3, 0.1, n);
 }
 
+// [KHR_materials_clearcoat]: mix(base, coat, w F), F Schlick's of 0.04 at the viewer's cosine to the surface.
+TEST_F(TargetModel, GltfCoat) {
+  SyntheticCase coated;
+  coated.model.lobes = {{Ndf::kGgx}, {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered}};
+  const double ior = 1.4, alpha = 0.3, coat_alpha = 0.1, f0 = std::pow((ior - 1) / (ior + 1), 2);
+  coated.values = {{alpha},       {alpha},      {0}, {0}, {0}, {0.9, 0.6, 0.4},
+                   {coat_alpha},  {coat_alpha}, {0}, {0}, {0}, {ior, ior, ior},
+                   {0, 0.1, 0.3}, {0, 0, 0}};
+  const std::string text = Export(coated, "gltf", "sample.gltf");
+  const auto value = [&](const std::string& name) { return Find(text, "\"" + name + "\": (\\[[^\\]]*\\]|[-0-9.e]+)"); };
+  const std::vector<double> base = value("baseColorFactor");
+  const double weight = value("clearcoatFactor")[0], roughness = value("clearcoatRoughnessFactor")[0];
+  EXPECT_EQ(value("metallicFactor")[0], 1);
+  EXPECT_NEAR(weight, f0 / 0.04, 1e-12);
+  EXPECT_NEAR(roughness * roughness, coat_alpha, 1e-12);
+  EXPECT_NEAR(base[1], 0.6 * (1 - f0) * std::exp(-0.2), 1e-12);
+  ExpectSame(
+      [&](const Vec3& wi, const Vec3& wo) {
+        const auto frame = TurnedFrame(0, {0, 0, 1});
+        const double c = Dot(wi, Normalized(wi + wo)), mixed = weight * SchlickFresnel(0.04, wo.z);
+        Rgb3 f = {};
+        for (std::size_t k = 0; k < 3; ++k) {
+          f[k] = mixed * LobeFactor(frame, coat_alpha, coat_alpha, wi, wo, "correlated") +
+                 (1 - mixed) * LobeFactor(frame, alpha, alpha, wi, wo, "correlated") * SchlickFresnel(base[k], c);
+        }
+        return f;
+      },
+      1e-6);
+}
+
 TEST_F(TargetModel, OpenPbr) {
   const std::string text = Export(test::Turned(), "openpbr", "sample.openpbr.mtlx");
   const auto value = [&](const std::string& name) {

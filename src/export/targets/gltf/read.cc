@@ -22,12 +22,14 @@ using Json = nlohmann::ordered_json;
 // What each object of a material may hold.
 const std::map<std::string, std::vector<std::string>>& KnownMembers() {
   static const std::map<std::string, std::vector<std::string>> known = {
-      {"the extensions", {"KHR_materials_anisotropy", "KHR_materials_ior", "KHR_materials_specular"}},
+      {"the extensions",
+       {"KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_ior", "KHR_materials_specular"}},
       {"the material",
        {"name", "pbrMetallicRoughness", "normalTexture", "extensions", "alphaMode", "alphaCutoff", "doubleSided",
         "emissiveFactor"}},
       {"pbrMetallicRoughness", {"baseColorFactor", "metallicFactor", "roughnessFactor"}},
       {"KHR_materials_anisotropy", {"anisotropyStrength", "anisotropyRotation"}},
+      {"KHR_materials_clearcoat", {"clearcoatFactor", "clearcoatRoughnessFactor"}},
       {"KHR_materials_ior", {"ior"}},
       {"KHR_materials_specular", {"specularFactor", "specularColorFactor"}},
       {"normalTexture", {"index", "scale", "texCoord"}}};
@@ -51,6 +53,7 @@ class GltfReader {
     const Json& pbr = Object(entry, "pbrMetallicRoughness", none);
     const Json& extensions = Object(entry, "extensions", none);
     const Json& anisotropy = Object(extensions, "KHR_materials_anisotropy", none);
+    const Json& clearcoat = Object(extensions, "KHR_materials_clearcoat", none);
     const Json& ior = Object(extensions, "KHR_materials_ior", none);
     const Json& specular = Object(extensions, "KHR_materials_specular", none);
     // Without pbrMetallicRoughness the defaults hold, but then an extension stands in its place.
@@ -58,6 +61,7 @@ class GltfReader {
     CheckMembers(entry, "the material");
     CheckMembers(pbr, "pbrMetallicRoughness");
     CheckMembers(anisotropy, "KHR_materials_anisotropy");
+    CheckMembers(clearcoat, "KHR_materials_clearcoat");
     CheckMembers(ior, "KHR_materials_ior");
     CheckMembers(specular, "KHR_materials_specular");
     if (entry.contains("alphaMode") && entry["alphaMode"] != "OPAQUE") Fail("the material is not opaque (alphaMode)");
@@ -69,6 +73,8 @@ class GltfReader {
     material.roughness.roughness = Real(pbr, "roughnessFactor", 1);
     material.roughness.anisotropy = Real(anisotropy, "anisotropyStrength", 0);
     material.rotation = Real(anisotropy, "anisotropyRotation", 0);
+    material.clearcoat = Real(clearcoat, "clearcoatFactor", 0);
+    material.clearcoat_roughness = Real(clearcoat, "clearcoatRoughnessFactor", 0);
     material.ior = Real(ior, "ior", 1.5);
     material.specular = Real(specular, "specularFactor", 1);
     material.specular_color = Color(specular, "specularColorFactor", 3, {1, 1, 1});

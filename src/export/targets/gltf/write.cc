@@ -18,8 +18,13 @@ using Json = nlohmann::ordered_json;
 
 std::vector<Carried> CarriesGltf(const FittedBrdf& fit) {
   const Surface surface = GltfSurface(GltfOf(fit));
-  return CarriesMetalBase(fit, CarriesLobes(fit, Masking::kSmithHeight, "height-correlated Smith"),
-                          surface.lobes[0].fresnel.f0);
+  std::vector<Carried> rows = CarriesMetalBase(fit, CarriesLobes(fit, Masking::kSmithHeight, "height-correlated Smith"),
+                                               surface.lobes[0].fresnel.f0);
+  if (surface.coating == Surface::Coating::kNone) return rows;
+  Mark(&rows, Feature::kCoat, Carries::kApproximately,
+       "by a clear coat of the index 1.5 with a weight, which dims what lies below for the viewer's direction only");
+  if (fit.lobes().size() == 2) Mark(&rows, Feature::kSecondLobe, Carries::kApproximately, "the coat");
+  return rows;
 }
 
 Model OneLobeModel(const FittedBrdf& fit) { return OwnModel(fit, Masking::kSmithHeight, 1); }
@@ -36,6 +41,10 @@ WrittenFiles WriteGltf(const FittedBrdf& fit, const WriteContext& context) {
   if (material.roughness.anisotropy > 0) {
     extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", material.roughness.anisotropy},
                                               {"anisotropyRotation", material.rotation}};
+  }
+  if (material.clearcoat > 0) {
+    extensions["KHR_materials_clearcoat"] = {{"clearcoatFactor", material.clearcoat},
+                                             {"clearcoatRoughnessFactor", material.clearcoat_roughness}};
   }
   if (material.ior != 1.5) extensions["KHR_materials_ior"] = {{"ior", material.ior}};
   if (material.specular_color != Color3{1, 1, 1}) {
@@ -82,7 +91,7 @@ WrittenFiles WriteGltf(const FittedBrdf& fit, const WriteContext& context) {
 
 Target GltfTarget() {
   return {.name = "gltf",
-          .description = "glTF 2.0 with KHR_materials_anisotropy, ior, specular",
+          .description = "glTF 2.0 with KHR_materials_anisotropy, clearcoat, ior, specular",
           .load = "open {name}.gltf; copy its material '{name}'",
           .rgb_only = true,
           .refusal = RefuseNoLobe,

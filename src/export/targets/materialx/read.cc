@@ -210,8 +210,8 @@ class MaterialXReader {
       xml_.Fail(layer, "a layer is understood with a dielectric_bsdf as its top only");
     CheckInputs(top);
     AddLobe(top, 1, surface);
-    surface->layering = Surface::Layering::kCoat;
-    surface->layer_lobe = surface->lobes.size() - 1;
+    surface->coating = Surface::Coating::kAlbedo;
+    surface->coat_lobe = surface->lobes.size() - 1;
     return Source(layer, "base");
   }
 

@@ -1,7 +1,6 @@
 #include "lobefit/export/targets/materialx/write.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -38,35 +37,27 @@ std::string LobeNode(const std::string& name, const SurfaceLobe& lobe, const Fra
              Number9(lobe.widths.alpha_1), Number9(lobe.widths.alpha_2), frame.normal, frame.tangent, node);
 }
 
-// A layer dims what lies below by the coat's albedo seen from the viewer, which has no factor for the light's way in:
-// the lobes below have it in their colours, at normal incidence. A Lambertian part below has it in the mean already.
+// A layer over all lobes but the coat's, and over the diffuse part.
 void PutBelowCoat(const FittedBrdf& fit, Surface* surface) {
   const Model& model = fit.material().model;
   const std::size_t coat = CoatOf(model);
   if (coat == model.lobes.size()) return;
-  const std::vector<double>& ior = fit.material().parameters[FirstFresnel(model, coat)].values;
-  const std::vector<double>& tau = fit.material().parameters[FirstFresnel(model, coat) + 1].values;
-  const double enters = 1 - fit.Fresnel(coat, 0, 1);
   std::size_t place = 0;
   for (std::size_t l = 0; l < fit.lobes().size(); ++l) {
     if (fit.lobes()[l].retro) continue;
     SurfaceFresnel& fresnel = surface->lobes[place].fresnel;
     if (l == coat) {
-      surface->layering = Surface::Layering::kCoat;
-      surface->layer_lobe = place;
+      surface->coating = Surface::Coating::kAlbedo;
+      surface->coat_lobe = place;
+      const double ior = fit.material().parameters[FirstFresnel(model, coat)].values[0];
       fresnel.kind = SurfaceFresnel::Kind::kDielectric;
-      fresnel.eta = Spectrum(fresnel.f0.size(), ior[0]);
+      fresnel.eta = Spectrum(fresnel.f0.size(), ior);
     } else if (fresnel.kind == SurfaceFresnel::Kind::kSchlick) {
-      for (std::size_t c = 0; c < fresnel.f0.size(); ++c) {
-        const double kept = enters * std::exp(-2 * tau[tau.size() == 1 ? 0 : c]);
-        fresnel.f0[c] *= kept;
-        fresnel.f90[c] *= kept;
-      }
+      DimBelowCoat(fit, coat, &fresnel, nullptr);
     }
     ++place;
   }
-  for (std::size_t c = 0; c < surface->diffuse.size(); ++c)
-    surface->diffuse[c] *= std::exp(-2 * tau[tau.size() == 1 ? 0 : c]);
+  DimBelowCoat(fit, coat, nullptr, &surface->diffuse);
 }
 
 std::vector<Carried> CarriesMaterialX(const FittedBrdf& fit) {
@@ -110,7 +101,7 @@ WrittenFiles WriteMaterialX(const FittedBrdf& fit, const WriteContext& context) 
     const std::string name = fmt::format("{}_lobe{}", id, l + 1);
     const FrameText frame = FrameNodes(name, surface.lobes[l].rotation, surface.lobes[l].normal);
     nodes += frame.nodes + LobeNode(name, surface.lobes[l], frame);
-    if (surface.layering != Surface::Layering::kCoat || l != surface.layer_lobe) add(name);
+    if (surface.coating == Surface::Coating::kNone || l != surface.coat_lobe) add(name);
   }
   if (fit.HasDiffuse() || surface.lobes.empty()) {
     nodes += fmt::format(
@@ -121,12 +112,12 @@ WrittenFiles WriteMaterialX(const FittedBrdf& fit, const WriteContext& context) 
         id, Numbers9(surface.diffuse, ", "), Number9(surface.diffuse_roughness));
     add(id + "_diffuse");
   }
-  if (surface.layering == Surface::Layering::kCoat) {
+  if (surface.coating != Surface::Coating::kNone) {
     nodes += fmt::format(
         "  <layer name=\"{0}_coated\" type=\"BSDF\">\n    <input name=\"top\" type=\"BSDF\" "
         "nodename=\"{0}_lobe{1}\"/>\n"
         "    <input name=\"base\" type=\"BSDF\" nodename=\"{2}\"/>\n  </layer>\n",
-        id, surface.layer_lobe + 1, sum);
+        id, surface.coat_lobe + 1, sum);
     sum = id + "_coated";
   }
   nodes += fmt::format(
