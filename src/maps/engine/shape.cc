@@ -7,31 +7,6 @@
 namespace lobefit {
 namespace {
 
-void Cosines(const MapFrame& frame, const LightArrays& lights, bool gradient, ShapeArrays* out) {
-  for (std::size_t l = 0; l < lights.padded; ++l) {
-    const double c = frame.n.x * lights.x[l] + frame.n.y * lights.y[l] + frame.n.z * lights.z[l];
-    out->cosine[l] = c > 0 ? c : 0;
-  }
-  if (!gradient) return;
-  for (int j = 0; j < 2; ++j) {
-    const Vec3 t = j == 0 ? frame.t : frame.b;
-    for (std::size_t l = 0; l < lights.padded; ++l) {
-      const double d = t.x * lights.x[l] + t.y * lights.y[l] + t.z * lights.z[l];
-      out->dcosine[j][l] = out->cosine[l] > 0 ? d : 0;
-    }
-  }
-}
-
-// One width: D and G1 depend on the cosines with the normal alone. With s(c) = sqrt(c^2 + alpha^2 (1 - c^2)) and K =
-// h_z^2 + (|h|^2 - h_z^2) / alpha^2:
-//   specular = |h|^4 i_z / (pi alpha^2 K^2 (i_z + s_i) (o_z + s_o)).
-void Isotropic(const MapPoint& point, const MapFrame& frame, const LightArrays& lights, bool gradient,
-               ShapeArrays* out) {
-  double* const derivatives[3] = {out->dspecular[0].data(), out->dspecular[1].data(), out->dspecular[2].data()};
-  IsotropicLobe(std::exp(point.width[0]), frame, lights,
-                {out->cosine.data(), out->specular.data(), gradient ? derivatives : nullptr});
-}
-
 // Derivatives of the frame's axes t and b where n moves by dn.
 MapFrame FrameDerivative(const Vec3& n, const Vec3& dn) {
   const double q = 1 / (1 + n.z), dq = -q * q * dn.z;
@@ -102,14 +77,26 @@ void Anisotropic(const MapPoint& point, const MapFrame& frame, const LightArrays
 
 void ShapeArrays::Resize(std::size_t padded) {
   cosine.resize(padded), specular.resize(padded);
-  for (std::vector<double>& d : dcosine) d.resize(padded);
-  for (std::vector<double>& d : dspecular) d.resize(padded);
+  for (LightVector& d : dcosine) d.resize(padded);
+  for (LightVector& d : dspecular) d.resize(padded);
 }
 
 void EvaluateShape(MapLobe lobe, const MapPoint& point, const LightArrays& lights, bool gradient, ShapeArrays* out) {
   const MapFrame frame = FrameOf(point.normal);
-  Cosines(frame, lights, gradient, out);
-  if (lobe == MapLobe::kGgx) Isotropic(point, frame, lights, gradient, out);
+  double* const dcosine[2] = {out->dcosine[0].data(), out->dcosine[1].data()};
+  if (lobe == MapLobe::kGgx) {
+    // One width: D and G1 depend on the cosines with the normal alone. With s(c) = sqrt(c^2 + alpha^2 (1 - c^2)) and K =
+    // h_z^2 + (|h|^2 - h_z^2) / alpha^2:
+    //   specular = |h|^4 i_z / (pi alpha^2 K^2 (i_z + s_i) (o_z + s_o)).
+    double* const dspecular[3] = {out->dspecular[0].data(), out->dspecular[1].data(), out->dspecular[2].data()};
+    const double alpha = std::exp(point.width[0]);
+    double *cosine = out->cosine.data(), *specular = out->specular.data();
+    if (gradient) IsotropicGradient(alpha, frame, lights, cosine, specular, dcosine, dspecular);
+    if (!gradient) IsotropicValue(alpha, frame.n, lights, cosine, specular);
+    return;
+  }
+  Cosines(frame.n, lights, out->cosine.data());
+  if (gradient) CosineDerivatives(frame, lights, dcosine[0], dcosine[1]);
   if (lobe == MapLobe::kGgxAnisotropic) Anisotropic(point, frame, lights, gradient, out);
 }
 
