@@ -14,7 +14,7 @@ constexpr double kExact = 1e-20;
 
 // A decrease below this part of the cost is near the minimum; a descent whose steps promise less than a tenth of what it
 // is behind will not catch up.
-constexpr double kNear = 0.2, kHopeless = 4;
+constexpr double kNear = 0.1, kHopeless = 4;
 // Below this ratio of what a step did to what it promised, the quadratic says nothing about it.
 constexpr double kFarBeyond = -8;
 // A step that promises less than this part of the cost stays in its valley.
@@ -160,13 +160,15 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
   const int unknowns = model.Unknowns();
   const double exact = kExact * static_cast<double>(data.lights.count);
   MapDescent at = {start, 0, false, 0};
-  MapVector gradient = {}, before = {}, step = {};
-  MapMatrix hessian = {};
+  MapVector gradient = {}, next_gradient = {}, before = {}, step = {};
+  MapMatrix hessian = {}, next_hessian = {};
   double damping = 1e-4;
-  bool near = false, was_near = false;
+  bool near = false, was_near = false, known_here = false;
   while (at.iterations < kMostIterations) {
-    at.cost = objective->Derivatives(model, data, at.point, loss, near ? Curvature::kClipped : Curvature::kNone,
-                                     &gradient, &hessian);
+    if (!known_here) {
+      at.cost = objective->Derivatives(model, data, at.point, loss, near ? Curvature::kClipped : Curvature::kNone,
+                                       &gradient, &hessian);
+    }
     if (known != nullptr && IsSame(at.point, known->point)) return at;
     const Place place = PlaceOf(model, at.point, bounds);
     const std::array<bool, kMostUnknowns> held = HeldAt(model, place, bounds, gradient);
@@ -196,8 +198,10 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
       double cost;
       const auto attempt = [&] {
         next = Moved(model, bounds, at.point, place, step);
-        cost = near ? objective->Cost(model, data, next, loss)
-                    : objective->CostOfShape(model, data, objective->weight(), loss, bounds.most_f0, &next);
+        // Near the minimum nearly all steps are taken: their derivatives come with the cost.
+        cost = near
+                   ? objective->Derivatives(model, data, next, loss, Curvature::kClipped, &next_gradient, &next_hessian)
+                   : objective->CostOfShape(model, data, objective->weight(), loss, bounds.most_f0, &next);
         return (at.cost - cost) / promised;
       };
       double quality = attempt();
@@ -212,8 +216,10 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
         damping = quality > 0.75 ? damping * 0.1 : quality < 0.25 ? damping * 4 : damping;
         damping = std::max(damping, 1e-12);
         was_near = near && promised < kClose * at.cost;
-        near = at.cost - cost < kNear * at.cost;
         before = gradient;
+        known_here = near && at.cost - cost < kNear * at.cost;
+        near = at.cost - cost < kNear * at.cost;
+        if (known_here) gradient = next_gradient, hessian = next_hessian;
         at.point = next;
         at.cost = cost;
         moved = true;

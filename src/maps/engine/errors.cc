@@ -20,16 +20,9 @@ MapErrors ErrorsOf(const MapModel& model, const TexelData& data, const MapPoint&
     if (errors.regular) break;
   }
   if (!errors.regular) return errors;
-  MapMatrix inverse = {};
-  for (int j = 0; j < unknowns; ++j) {
-    MapVector unit = {};
-    unit[j] = held[j] ? 0 : 1;
-    SolveFactorised(unknowns, factor, &unit);
-    inverse[j] = unit;
-  }
   // A_l = J^T W J with W = w 1 + bend r r^T: without this light the solution moves by (A - A_l)^-1 J^T w r =
   // A^-1 J^T (1 - W J A^-1 J^T)^-1 w r.
-  const auto moved = objective->Moves(model, data, inverse);
+  const auto moved = objective->Moves(model, data, InverseOf(unknowns, held, factor));
   AddGram(data.lights.live.data(), moved.data(), unknowns, data.lights.padded, &errors.covariance);
   for (int j = 0; j < unknowns; ++j) {
     for (int k = 0; k <= j; ++k) {

@@ -28,7 +28,6 @@ template <int kSize>
 void SolveOf(const MapMatrix& factor, MapVector* solution) {
   MapVector& x = *solution;
   for (int j = 0; j < kSize; ++j) {
-    if (x[j] == 0) continue;  // as for most rows of an inverse
     x[j] *= factor[j][j];
     for (int i = j + 1; i < kSize; ++i) x[i] -= factor[j][i] * x[j];
   }
@@ -36,6 +35,24 @@ void SolveOf(const MapMatrix& factor, MapVector* solution) {
     double sum = 0;
     for (int i = j + 1; i < kSize; ++i) sum += factor[j][i] * x[i];
     x[j] -= sum * factor[j][j];
+  }
+}
+
+// All columns of the inverse together: what one waits for another does meanwhile.
+template <int kSize>
+void InvertOf(const MapMatrix& factor, MapMatrix* inverse) {
+  MapMatrix& x = *inverse;
+  for (int j = 0; j < kSize; ++j) {
+    for (int c = 0; c < kSize; ++c) x[j][c] *= factor[j][j];
+    for (int i = j + 1; i < kSize; ++i) {
+      for (int c = 0; c < kSize; ++c) x[i][c] -= factor[j][i] * x[j][c];
+    }
+  }
+  for (int j = kSize - 2; j >= 0; --j) {
+    for (int i = j + 1; i < kSize; ++i) {
+      const double share = factor[j][i] * factor[j][j];
+      for (int c = 0; c < kSize; ++c) x[j][c] -= share * x[i][c];
+    }
   }
 }
 
@@ -61,6 +78,13 @@ bool Factorise(int unknowns, const std::array<bool, kMostUnknowns>& held, MapMat
 
 void SolveFactorised(int unknowns, const MapMatrix& factor, MapVector* x) {
   BySize(unknowns, [&](auto size) { SolveOf<size()>(factor, x); });
+}
+
+MapMatrix InverseOf(int unknowns, const std::array<bool, kMostUnknowns>& held, const MapMatrix& factor) {
+  MapMatrix inverse = {};
+  for (int j = 0; j < unknowns; ++j) inverse[j][j] = held[j] ? 0 : 1;
+  BySize(unknowns, [&](auto size) { InvertOf<size()>(factor, &inverse); });
+  return inverse;
 }
 
 }  // namespace lobefit

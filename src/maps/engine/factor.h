@@ -10,5 +10,7 @@ namespace lobefit {
 // positive definite. Domain: 1 to kMostUnknowns unknowns.
 bool Factorise(int unknowns, const std::array<bool, kMostUnknowns>& held, MapMatrix* matrix);
 void SolveFactorised(int unknowns, const MapMatrix& factor, MapVector* x);
+// The inverse; 0 in rows and columns of held unknowns.
+MapMatrix InverseOf(int unknowns, const std::array<bool, kMostUnknowns>& held, const MapMatrix& factor);
 
 }  // namespace lobefit
