@@ -130,20 +130,21 @@ bool BoundedStep(int unknowns, const Place& place, const MapVector& gradient, co
 // The matrix leaves out the model's own second derivatives: rank one of them from the change of the gradient over the last
 // step [Dennis, Gay and Welsch 1981, of one step], unless the curvature along it is not positive.
 bool AddSecant(int unknowns, const std::array<bool, kMostUnknowns>& held, const MapVector& step,
-               const MapVector& before, const MapVector& gradient, MapMatrix* hessian) {
+               const MapVector& before, const MapVector& gradient, const MapMatrix& hessian, MapMatrix* with_secant) {
   MapVector missing = {};
   double along = 0, curvature = 0, whole = 0;
   for (int j = 0; j < unknowns; ++j) {
     if (held[j]) continue;
     double bent = 0;
-    for (int k = 0; k < unknowns; ++k) bent += held[k] ? 0 : (*hessian)[j][k] * step[k];
+    for (int k = 0; k < unknowns; ++k) bent += held[k] ? 0 : hessian[j][k] * step[k];
     missing[j] = gradient[j] - before[j] - bent;
     along += missing[j] * step[j], whole += bent * step[j];
     curvature += (gradient[j] - before[j]) * step[j];
   }
   if (!(curvature > 0.1 * whole) || !(std::fabs(along) > 1e-3 * whole)) return false;
   for (int j = 0; j < unknowns; ++j) {
-    for (int k = 0; k < unknowns; ++k) (*hessian)[j][k] += missing[j] * missing[k] / along;
+    const double share = missing[j] / along;
+    for (int k = 0; k < unknowns; ++k) (*with_secant)[j][k] = hessian[j][k] + share * missing[k];
   }
   return true;
 }
@@ -161,25 +162,27 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
   const double exact = kExact * static_cast<double>(data.lights.count);
   MapDescent at = {start, 0, false, 0};
   MapVector gradient = {}, next_gradient = {}, before = {}, step = {};
-  MapMatrix hessian = {}, next_hessian = {};
+  // Turned about, not copied.
+  MapMatrix matrices[3] = {};
+  MapMatrix *hessian = &matrices[0], *next_hessian = &matrices[1], *with_secant = &matrices[2];
   double damping = 1e-4;
   bool near = false, was_near = false, known_here = false;
   while (at.iterations < kMostIterations) {
     if (!known_here) {
       at.cost = objective->Derivatives(model, data, at.point, loss, near ? Curvature::kClipped : Curvature::kNone,
-                                       &gradient, &hessian);
+                                       &gradient, hessian);
     }
     if (known != nullptr && IsSame(at.point, known->point)) return at;
     const Place place = PlaceOf(model, at.point, bounds);
     const std::array<bool, kMostUnknowns> held = HeldAt(model, place, bounds, gradient);
-    const MapMatrix without = hessian;
-    bool corrected = was_near && AddSecant(unknowns, held, step, before, gradient, &hessian);
+    bool corrected = was_near && AddSecant(unknowns, held, step, before, gradient, *hessian, with_secant);
     bool moved = false;
     for (; !moved && at.iterations < kMostIterations; ++at.iterations) {
       double promised;
-      if (!BoundedStep(unknowns, place, gradient, hessian, damping, held, &step, &promised)) {
+      if (!BoundedStep(unknowns, place, gradient, corrected ? *with_secant : *hessian, damping, held, &step,
+                       &promised)) {
         if (corrected) {
-          hessian = without, corrected = false;
+          corrected = false;
           continue;
         }
         damping = std::max(10 * damping, 1e-9);
@@ -199,9 +202,8 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
       const auto attempt = [&] {
         next = Moved(model, bounds, at.point, place, step);
         // Near the minimum nearly all steps are taken: their derivatives come with the cost.
-        cost = near
-                   ? objective->Derivatives(model, data, next, loss, Curvature::kClipped, &next_gradient, &next_hessian)
-                   : objective->CostOfShape(model, data, objective->weight(), loss, bounds.most_f0, &next);
+        cost = near ? objective->Derivatives(model, data, next, loss, Curvature::kClipped, &next_gradient, next_hessian)
+                    : objective->CostOfShape(model, data, objective->weight(), loss, bounds.most_f0, &next);
         return (at.cost - cost) / promised;
       };
       double quality = attempt();
@@ -219,7 +221,7 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
         before = gradient;
         known_here = near && at.cost - cost < kNear * at.cost;
         near = at.cost - cost < kNear * at.cost;
-        if (known_here) gradient = next_gradient, hessian = next_hessian;
+        if (known_here) gradient = next_gradient, std::swap(hessian, next_hessian);
         at.point = next;
         at.cost = cost;
         moved = true;
@@ -229,7 +231,7 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
         }
       } else {
         damping = std::max(10 * damping, kLeastRefused);
-        if (corrected) hessian = without, corrected = false;
+        corrected = false;
         if (damping > 1e12) return at;
       }
     }

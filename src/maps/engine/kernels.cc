@@ -43,6 +43,7 @@ struct Kernels {
   decltype(&plain::CosineDerivatives) cosine_derivatives;
   decltype(&plain::IsotropicValue) isotropic_value;
   decltype(&plain::IsotropicGradient) isotropic_gradient;
+  decltype(&plain::AnisotropicLobe) anisotropic_lobe;
   decltype(&plain::SumAmplitudes) sum_amplitudes;
   decltype(&plain::CostOf) cost_of;
   decltype(&plain::RowsOf) rows_of;
@@ -51,10 +52,10 @@ struct Kernels {
   decltype(&plain::MovesOf) moves_of;
 };
 
-#define LOBEFIT_KERNELS(set)                                                                               \
-  Kernels {                                                                                                \
-    set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::SumAmplitudes, \
-        set::CostOf, set::RowsOf, set::AddSquares, set::AddGram, set::MovesOf                              \
+#define LOBEFIT_KERNELS(set)                                                                                 \
+  Kernels {                                                                                                  \
+    set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe, \
+        set::SumAmplitudes, set::CostOf, set::RowsOf, set::AddSquares, set::AddGram, set::MovesOf            \
   }
 
 Kernels Choose() {
@@ -81,6 +82,9 @@ void IsotropicValue(double alpha, const Vec3& normal, const LightArrays& lights,
 void IsotropicGradient(double alpha, const MapFrame& frame, const LightArrays& lights, double* cosine, double* specular,
                        double* const* dcosine, double* const* dspecular) {
   kKernels.isotropic_gradient(alpha, frame, lights, cosine, specular, dcosine, dspecular);
+}
+void AnisotropicLobe(const TwoWidths& widths, const LightArrays& lights, double* specular, double* const* dspecular) {
+  kKernels.anisotropic_lobe(widths, lights, specular, dspecular);
 }
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums) {
   kKernels.sum_amplitudes(terms, weight, sums);

@@ -24,6 +24,13 @@ struct AmplitudeSums {
   double aa, ab, bb, ay, by;
 };
 
+// L = (a 0; b c) in the frame of the normal, and what the frame changes by where the normal turns along its axes.
+struct TwoWidths {
+  double a, b, c;
+  MapFrame frame;
+  MapFrame turned[2];
+};
+
 // What a texel's predictions are made of, over its padded lights: of shape.h, values, and how they are weighed.
 struct LightTerms {
   int shape = 2, channels = 1;  // numbers of the shape (2: no lobe), channels (1 or 3)
@@ -54,6 +61,8 @@ void IsotropicValue(double alpha, const Vec3& normal, const LightArrays& lights,
 // dspecular: 3 arrays.
 void IsotropicGradient(double alpha, const MapFrame& frame, const LightArrays& lights, double* cosine, double* specular,
                        double* const* dcosine, double* const* dspecular);
+// dspecular: 5 arrays, or null.
+void AnisotropicLobe(const TwoWidths& widths, const LightArrays& lights, double* specular, double* const* dspecular);
 
 // By channels.
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums);
