@@ -14,7 +14,7 @@ constexpr double kExact = 1e-20;
 
 // A decrease below this part of the cost is near the minimum; a descent whose steps promise less than a tenth of what it
 // is behind will not catch up.
-constexpr double kNear = 0.1, kHopeless = 4;
+constexpr double kNear = 0.2, kHopeless = 10;
 // Below this ratio of what a step did to what it promised, the quadratic says nothing about it.
 constexpr double kFarBeyond = -8;
 // A step that promises less than this part of the cost stays in its valley.
@@ -26,8 +26,8 @@ constexpr double kLeastRefused = 1e-3;
 
 // On the way to the same minimum.
 bool IsSame(const MapPoint& a, const MapPoint& b) {
-  return Dot(a.normal, b.normal) > 0.9999 && std::fabs(a.width[0] - b.width[0]) < 0.1 &&
-         std::fabs(a.width[1] - b.width[1]) < 0.02 && std::fabs(a.width[2] - b.width[2]) < 0.1;
+  return Dot(a.normal, b.normal) > 0.99999 && std::fabs(a.width[0] - b.width[0]) < 0.05 &&
+         std::fabs(a.width[1] - b.width[1]) < 0.02 && std::fabs(a.width[2] - b.width[2]) < 0.05;
 }
 
 // Where the unknowns stand and may stand; the turns of the normal are 0 and free.
