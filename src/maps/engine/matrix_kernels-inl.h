@@ -1,8 +1,8 @@
 // Sums of products over lights for matrices of second derivatives and of errors (kernels-inl.h).
 
 // With p = d cosine, q = d specular: a channel's column of shape j is d p_j + e q_j, e = f0 + (carried - f0) k; so sums
-// over channels need P = sum d^2, Q = sum d e, R = sum e^2 alone, and the columns of amplitudes, A and B, are the same in
-// all channels.
+// over channels need P = sum d^2, Q = sum d e, R = sum e^2 alone, and the columns of amplitudes, A and B, are the same
+// in all channels.
 template <int kShape, int kChannels>
 LOBEFIT_INLINE void AddSquaresOf(const LightTerms terms, const double* weight, MapMatrix* matrix) {
   constexpr bool kLobe = kShape > 2;
