@@ -1,4 +1,7 @@
+#include <tuple>
+
 #include "tests/maps/texels.h"
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "lobefit/core/brdf/brdf.h"
@@ -71,7 +74,7 @@ TEST_P(EachLobe, DerivativesAreThoseOfTheCost) {
   const double loss = 0.4;
   MapVector gradient;
   MapMatrix hessian;
-  objective.Derivatives(model, data, point, loss, TexelObjective::Curvature::kWhole, &gradient, &hessian);
+  objective.Derivatives(model, data, point, loss, Curvature::kWhole, &gradient, &hessian);
   const MapFrame frame = FrameOf(point.normal);
   for (int j = 0; j < model.Unknowns(); ++j) {
     const auto moved = [&](double step) {
@@ -90,6 +93,104 @@ TEST_P(EachLobe, DerivativesAreThoseOfTheCost) {
     const double h = 2e-4;
     const double expected = (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
     EXPECT_NEAR(gradient[static_cast<std::size_t>(j)], expected, 1e-9) << "unknown " << j;
+  }
+}
+
+// The matrix and the errors against their definitions, with the model's derivatives by differences: sum w J^T J + bend
+// (J^T r)(J^T r)^T, and what the solution moves by, to first order, where one light after the other is left out.
+class EachModel : public testing::TestWithParam<std::tuple<MapLobe, int>> {};
+INSTANTIATE_TEST_SUITE_P(Models, EachModel,
+                         testing::Combine(testing::Values(MapLobe::kNone, MapLobe::kGgx, MapLobe::kGgxAnisotropic),
+                                          testing::Values(1, 3)));
+
+TEST_P(EachModel, MatrixAndErrorsAreThoseOfTheirDefinitions) {
+  const auto [lobe, channels] = GetParam();
+  const MapModel model = {lobe, channels, true};
+  const std::vector<Vec3> directions = DomeLights(43, 60 * kDegree);
+  TexelData data;
+  data.Resize(directions.size());
+  data.scale = 0.7;
+  TexelObjective objective;
+  objective.Resize(data.lights.padded);
+  const MapPoint point = SomePoint(lobe == MapLobe::kNone ? MapLobe::kGgx : lobe);
+  MapVector gradient;
+  MapMatrix hessian;
+  // Values near the model's, with noise and an outlier.
+  for (std::size_t l = 0; l < directions.size(); ++l) data.lights.Set(l, directions[l], true);
+  const double loss = 0.1;
+  objective.Derivatives(model, data, point, loss, Curvature::kWhole, &gradient, &hessian);
+  RandomNumbers random(6);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
+    for (std::size_t l = 0; l < directions.size(); ++l) {
+      const double exact = objective.residual(static_cast<int>(c))[l] + data.value[c][l];
+      data.value[c][l] = exact * (l == 7 ? 0.5 : 1 + 0.03 * random.Normal());
+    }
+  }
+  objective.Derivatives(model, data, point, loss, Curvature::kWhole, &gradient, &hessian);
+  const MapErrors errors =
+      ErrorsOf(model, data, point, {.least_width = -5, .most_width = 0, .most_f0 = 1e6}, loss, &objective);
+  ASSERT_TRUE(errors.regular);
+  const auto unknowns = static_cast<std::size_t>(model.Unknowns());
+  const MapFrame frame = FrameOf(point.normal);
+  // J[c][l][j].
+  std::vector<std::vector<std::vector<double>>> J(
+      static_cast<std::size_t>(channels),
+      std::vector<std::vector<double>>(directions.size(), std::vector<double>(unknowns)));
+  for (std::size_t j = 0; j < unknowns; ++j) {
+    const double h = 1e-4;
+    for (const double step : {h, -h}) {
+      MapPoint p = point;
+      if (j < 2) {
+        p.normal = Normalized(point.normal + step * (j == 0 ? frame.t : frame.b));
+      } else if (static_cast<int>(j) < model.Shape()) {
+        p.width[j - 2] += step;
+      } else {
+        const std::size_t at = j - static_cast<std::size_t>(model.Shape()),
+                          per = static_cast<std::size_t>(model.PerChannel());
+        (at % per == 0 ? p.diffuse : p.f0)[at / per] += step;
+      }
+      MapVector g;
+      MapMatrix m;
+      objective.Derivatives(model, data, p, loss, Curvature::kWhole, &g, &m);
+      for (std::size_t c = 0; c < J.size(); ++c) {
+        for (std::size_t l = 0; l < directions.size(); ++l) {
+          J[c][l][j] += objective.residual(static_cast<int>(c))[l] / (2 * step);
+        }
+      }
+    }
+  }
+  objective.Derivatives(model, data, point, loss, Curvature::kWhole, &gradient, &hessian);
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(model.Unknowns(), model.Unknowns());
+  std::vector<Eigen::MatrixXd> parts;
+  std::vector<Eigen::VectorXd> slopes;
+  for (std::size_t l = 0; l < directions.size(); ++l) {
+    double square = 0;
+    Eigen::MatrixXd part = Eigen::MatrixXd::Zero(model.Unknowns(), model.Unknowns());
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(model.Unknowns());
+    for (std::size_t c = 0; c < J.size(); ++c) {
+      const double r = objective.residual(static_cast<int>(c))[l];
+      const Eigen::VectorXd column = Eigen::Map<const Eigen::VectorXd>(J[c][l].data(), model.Unknowns());
+      square += r * r, row += r * column, part += column * column.transpose();
+    }
+    const double w = 1 / (1 + square / (loss * loss));
+    part = w * part - 2 * w * w / (loss * loss) * row * row.transpose();
+    whole += part;
+    parts.push_back(part), slopes.push_back(w * row);
+  }
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(model.Unknowns(), model.Unknowns());
+  for (std::size_t l = 0; l < directions.size(); ++l) {
+    const Eigen::VectorXd moved = (whole - parts[l]).fullPivLu().solve(slopes[l]);
+    covariance += moved * moved.transpose();
+  }
+  for (std::size_t j = 0; j < unknowns; ++j) {
+    for (std::size_t k = 0; k < unknowns; ++k) {
+      const auto at = [&](const Eigen::MatrixXd& m, std::size_t a, std::size_t b) {
+        return m(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      };
+      const auto unit = [&](const Eigen::MatrixXd& m) { return std::sqrt(at(m, j, j) * at(m, k, k)); };
+      EXPECT_NEAR(hessian[j][k], at(whole, j, k), 1e-6 * unit(whole)) << j << " " << k;
+      EXPECT_NEAR(errors.covariance[j][k], at(covariance, j, k), 1e-4 * unit(covariance)) << j << " " << k;
+    }
   }
 }
 

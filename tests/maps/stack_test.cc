@@ -112,7 +112,7 @@ TEST_F(StackReading, RefusesWhatDoesNotFit) {
   ExpectRefused("3 images; 4 to 4096 are expected");
   WriteLights(5);
   Write("im 2.png", "no picture");
-  ExpectRefused("im 2.png: neither PNG nor OpenEXR");
+  ExpectRefused("im 2.png: neither PNG, JPEG, TIFF nor OpenEXR");
   Write("im 2.png", EncodePixels(std::vector<std::uint16_t>(12), 2, 2, 3, 16));
   ExpectRefused("im 2.png: 2 x 2 pixels, 3 channels, but");
 }

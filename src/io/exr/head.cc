@@ -105,24 +105,24 @@ struct Part {
 };
 
 // Every tile has eight bytes in a table of the file.
-void CheckTiles(const InputFile& file, const Part& part) {
+void CheckTiles(const InputFile& file, std::size_t file_bytes, const Part& part) {
   if (!part.extent || !part.tile) return;
   std::size_t tiles = 1;
   for (std::size_t k = 0; k < 2; ++k) {
     const std::int64_t extent = (*part.extent)[k], tile = (*part.tile)[k];
     if (extent < 1 || tile < 1) return;
     tiles *= static_cast<std::size_t>((extent - 1) / tile + 1);
-    if (tiles <= file.bytes.size() / 8) continue;
+    if (tiles <= file_bytes / 8) continue;
     FailAtByte(file, part.tiles_at,
                "tiles of " + std::to_string((*part.tile)[0]) + " x " + std::to_string((*part.tile)[1]) +
                    " pixels for an image of " + std::to_string((*part.extent)[0]) + " x " +
                    std::to_string((*part.extent)[1]) + " need a table of more bytes than the file has (" +
-                   std::to_string(file.bytes.size()) + "); fetch the file again");
+                   std::to_string(file_bytes) + "); fetch the file again");
   }
 }
 
 // The attributes of one part from *at on; false where there is none.
-bool CheckPart(const InputFile& file, std::size_t* at) {
+bool CheckPart(const InputFile& file, std::size_t file_bytes, std::size_t* at) {
   Part part;
   bool any = false;
   while (const std::optional<std::string_view> name = Word(file.bytes, at)) {
@@ -131,12 +131,13 @@ bool CheckPart(const InputFile& file, std::size_t* at) {
     const std::optional<std::string_view> type = Word(file.bytes, at);
     if (!type || file.bytes.size() - *at < 4) break;
     const std::size_t size = LoadU32(file.bytes, *at), data = *at + 4;
-    if (size > file.bytes.size() - data) {
+    if (size > file_bytes - data) {
       FailAtByte(file, *at,
                  "attribute '" + Excerpt(*name) + "' claims " + std::to_string(size) +
-                     " bytes, but the file has only " + std::to_string(file.bytes.size() - data) +
+                     " bytes, but the file has only " + std::to_string(file_bytes - data) +
                      " more; fetch the file again");
     }
+    if (size > file.bytes.size() - data) FailAtByte(file, *at, "its head is longer than 16 MB");
     if (!FitsItsType(file.bytes, *type, data, size)) {
       FailAtByte(file, *at,
                  "attribute '" + Excerpt(*name) + "' of type " + Excerpt(*type) + " states " + std::to_string(size) +
@@ -152,17 +153,17 @@ bool CheckPart(const InputFile& file, std::size_t* at) {
     }
     *at = data + size;
   }
-  CheckTiles(file, part);
+  CheckTiles(file, file_bytes, part);
   return any;
 }
 
 }  // namespace
 
-void CheckExrHead(const InputFile& file) {
+void CheckExrHead(const InputFile& file, std::size_t file_bytes) {
   if (file.bytes.size() < kFirstAttribute) return;
   const bool several = (LoadU32(file.bytes, 4) & kMultiPart) != 0;
   std::size_t at = kFirstAttribute;
-  while (CheckPart(file, &at) && several) {
+  while (CheckPart(file, file_bytes, &at) && several) {
   }
 }
 

@@ -7,6 +7,7 @@ namespace lobefit {
 
 // Throws InputError, which names the byte, where an attribute or a string of a list claims more bytes than the file
 // has, or where the file cannot hold the table of its tiles. What else is wrong with the head is left to OpenEXR.
-void CheckExrHead(const InputFile& file);
+// `file.bytes` may be the beginning of a file of `file_bytes`, as long as the head is in it. Heads of all parts.
+void CheckExrHead(const InputFile& file, std::size_t file_bytes);
 
 }  // namespace lobefit

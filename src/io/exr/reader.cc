@@ -295,7 +295,7 @@ bool IsExr(std::string_view bytes) { return bytes.starts_with(std::string_view(k
 
 Measurement ReadExr(const InputFile& file, const ReadOptions& options) {
   LimitOpenExr();
-  CheckExrHead(file);
+  CheckExrHead(file, file.bytes.size());
   try {
     MemoryStream stream(file.bytes);
     Imf::InputFile exr(stream, 0);

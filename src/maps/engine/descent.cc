@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lobefit/maps/engine/factor.h"
+
 namespace lobefit {
 namespace {
 
@@ -13,6 +15,14 @@ constexpr double kExact = 1e-20;
 // A decrease below this part of the cost is near the minimum; a descent whose steps promise less than a tenth of what it
 // is behind will not catch up.
 constexpr double kNear = 0.2, kHopeless = 10;
+// Below this ratio of what a step did to what it promised, the quadratic says nothing about it.
+constexpr double kFarBeyond = -8;
+// A step that promises less than this part of the cost stays in its valley.
+constexpr double kClose = 1e-3;
+// Where a step promised less than this part of the cost and kept it, what remains is a small part of that.
+constexpr double kLastStep = 1e-7;
+// Of the damping after a step that was refused.
+constexpr double kLeastRefused = 1e-3;
 
 // On the way to the same minimum.
 bool IsSame(const MapPoint& a, const MapPoint& b) {
@@ -20,52 +30,65 @@ bool IsSame(const MapPoint& a, const MapPoint& b) {
          std::fabs(a.width[1] - b.width[1]) < 0.02 && std::fabs(a.width[2] - b.width[2]) < 0.05;
 }
 
-// Where unknown j stands, for those that have bounds. Null: the turns of the normal.
-double* Place(const MapModel& model, MapPoint* point, int j) {
-  if (j < 2) return nullptr;
-  if (j < model.Shape()) return &point->width[j - 2];
-  const int at = j - model.Shape(), channel = at / model.PerChannel();
-  return at % model.PerChannel() == 0 ? &point->diffuse[channel] : &point->f0[channel];
-}
+// Where the unknowns stand and may stand; the turns of the normal are 0 and free.
+struct Place {
+  MapVector value, low, high;
+};
 
-void BoundsOf(const MapModel& model, const MapBounds& bounds, int j, double* low, double* high) {
-  *low = -1e300, *high = 1e300;
-  if (j < 2) return;
-  if (j < model.Shape()) {
+Place PlaceOf(const MapModel& model, const MapPoint& point, const MapBounds& bounds) {
+  Place place;
+  place.value.fill(0), place.low.fill(-1e300), place.high.fill(1e300);
+  for (int j = 2; j < model.Shape(); ++j) {
+    place.value[j] = point.width[j - 2];
     // The middle one of three, b, says how the two widths lean.
     const bool logarithm = model.lobe == MapLobe::kGgx || j != 3;
-    if (logarithm) *low = bounds.least_width, *high = bounds.most_width;
-    if (!logarithm) *low = -1, *high = 1;
-    return;
+    place.low[j] = logarithm ? bounds.least_width : -1, place.high[j] = logarithm ? bounds.most_width : 1;
   }
-  *low = 0;
-  if ((j - model.Shape()) % model.PerChannel() == 1) *high = bounds.most_f0;
+  for (int c = 0; c < model.channels; ++c) {
+    place.value[model.DiffuseAt(c)] = point.diffuse[c], place.low[model.DiffuseAt(c)] = 0;
+    if (model.lobe == MapLobe::kNone) continue;
+    place.value[model.F0At(c)] = point.f0[c];
+    place.low[model.F0At(c)] = 0, place.high[model.F0At(c)] = bounds.most_f0;
+  }
+  return place;
 }
 
 // The point after a step; a normal that would turn from the camera stays at the least n_z.
-void Moved(const MapModel& model, const MapBounds& bounds, const MapPoint& from, const MapVector& step, MapPoint* to) {
-  *to = from;
+MapPoint Moved(const MapModel& model, const MapBounds& bounds, const MapPoint& from, const Place& place,
+               const MapVector& step) {
+  MapPoint to = from;
   const MapFrame frame = FrameOf(from.normal);
-  to->normal = Normalized(frame.n + step[0] * frame.t + step[1] * frame.b);
-  if (to->normal.z < bounds.least_normal_z) {
-    const double flat = std::hypot(to->normal.x, to->normal.y), z = bounds.least_normal_z;
+  to.normal = Normalized(frame.n + step[0] * frame.t + step[1] * frame.b);
+  if (to.normal.z < bounds.least_normal_z) {
+    const double flat = std::hypot(to.normal.x, to.normal.y), z = bounds.least_normal_z;
     const double keep = std::sqrt(1 - z * z) / flat;
-    to->normal = {keep * to->normal.x, keep * to->normal.y, z};
+    to.normal = {keep * to.normal.x, keep * to.normal.y, z};
   }
-  for (int j = 2; j < model.Unknowns(); ++j) {
-    double low, high;
-    BoundsOf(model, bounds, j, &low, &high);
-    double* place = Place(model, to, j);
-    *place = std::clamp(*place + step[j], low, high);
+  const auto moved = [&](int j) { return std::clamp(place.value[j] + step[j], place.low[j], place.high[j]); };
+  for (int j = 2; j < model.Shape(); ++j) to.width[j - 2] = moved(j);
+  for (int c = 0; c < model.channels; ++c) {
+    to.diffuse[c] = moved(model.DiffuseAt(c));
+    if (model.lobe != MapLobe::kNone) to.f0[c] = moved(model.F0At(c));
   }
+  return to;
+}
+
+std::array<bool, kMostUnknowns> HeldAt(const MapModel& model, const Place& place, const MapBounds& bounds,
+                                       const MapVector& gradient) {
+  std::array<bool, kMostUnknowns> held = {};
+  for (int j = 0; j < model.Unknowns(); ++j) {
+    const bool is_width = j >= 2 && j < model.Shape();
+    held[j] = j < 2 ? bounds.normal_held
+                    : (is_width && bounds.width_held) || (place.value[j] <= place.low[j] && gradient[j] >= 0) ||
+                          (place.value[j] >= place.high[j] && gradient[j] <= 0);
+  }
+  return held;
 }
 
 // The damped step, and the decrease that the quadratic promises. What would leave its bounds goes as far as they are, and
 // the others follow. False where the damped matrix is not positive definite.
-bool BoundedStep(const MapModel& model, const MapBounds& bounds, MapPoint point, const MapVector& gradient,
-                 const MapMatrix& hessian, double damping, const std::array<bool, kMostUnknowns>& held, MapVector* step,
-                 double* promised) {
-  const int unknowns = model.Unknowns();
+bool BoundedStep(int unknowns, const Place& place, const MapVector& gradient, const MapMatrix& hessian, double damping,
+                 const std::array<bool, kMostUnknowns>& held, MapVector* step, double* promised) {
   std::array<bool, kMostUnknowns> fixed = held;
   MapVector known = {};  // steps of what is fixed
   for (int round = 0; round <= unknowns; ++round) {
@@ -73,7 +96,7 @@ bool BoundedStep(const MapModel& model, const MapBounds& bounds, MapPoint point,
     for (int j = 0; j < unknowns; ++j) factor[j][j] += damping * hessian[j][j] + 1e-300;
     for (int j = 0; j < unknowns; ++j) {
       (*step)[j] = fixed[j] ? 0 : -gradient[j];
-      for (int k = 0; !fixed[j] && k < unknowns; ++k) (*step)[j] -= hessian[j][k] * known[k];
+      for (int k = 0; round > 0 && !fixed[j] && k < unknowns; ++k) (*step)[j] -= hessian[j][k] * known[k];
     }
     if (!Factorise(unknowns, fixed, &factor)) return false;
     SolveFactorised(unknowns, factor, step);
@@ -84,13 +107,11 @@ bool BoundedStep(const MapModel& model, const MapBounds& bounds, MapPoint point,
         (*step)[j] = known[j];
         continue;
       }
-      double low, high;
-      BoundsOf(model, bounds, j, &low, &high);
-      const double value = *Place(model, &point, j);
-      const double beyond = std::max(low - (value + (*step)[j]), value + (*step)[j] - high);
+      const double value = place.value[j] + (*step)[j];
+      const double beyond = std::max(place.low[j] - value, value - place.high[j]);
       if (beyond > most) {
         most = beyond, leaving = j;
-        known[j] = (*step)[j] < 0 ? low - value : high - value;
+        known[j] = ((*step)[j] < 0 ? place.low[j] : place.high[j]) - place.value[j];
       }
     }
     if (leaving < 0) break;
@@ -106,50 +127,33 @@ bool BoundedStep(const MapModel& model, const MapBounds& bounds, MapPoint point,
   return true;
 }
 
-}  // namespace
-
-bool IsHeld(const MapModel& model, const MapPoint& point, const MapBounds& bounds, int j, double derivative) {
-  if (j < 2) return bounds.normal_held;
-  if (j < model.Shape() && bounds.width_held) return true;
-  double low, high;
-  BoundsOf(model, bounds, j, &low, &high);
-  MapPoint copy = point;
-  const double value = *Place(model, &copy, j);
-  return (value <= low && derivative >= 0) || (value >= high && derivative <= 0);
-}
-
-bool Factorise(int unknowns, const std::array<bool, kMostUnknowns>& held, MapMatrix* matrix) {
-  MapMatrix& m = *matrix;
+// The matrix leaves out the model's own second derivatives: rank one of them from the change of the gradient over the last
+// step [Dennis, Gay and Welsch 1981, of one step], unless the curvature along it is not positive.
+bool AddSecant(int unknowns, const std::array<bool, kMostUnknowns>& held, const MapVector& step,
+               const MapVector& before, const MapVector& gradient, const MapMatrix& hessian, MapMatrix* with_secant) {
+  MapVector missing = {};
+  double along = 0, curvature = 0, whole = 0;
   for (int j = 0; j < unknowns; ++j) {
-    if (held[j]) {
-      for (int k = 0; k < unknowns; ++k) m[j][k] = m[k][j] = 0;
-      m[j][j] = 1;
-    }
+    if (held[j]) continue;
+    double bent = 0;
+    for (int k = 0; k < unknowns; ++k) bent += held[k] ? 0 : hessian[j][k] * step[k];
+    missing[j] = gradient[j] - before[j] - bent;
+    along += missing[j] * step[j], whole += bent * step[j];
+    curvature += (gradient[j] - before[j]) * step[j];
   }
+  if (!(curvature > 0.1 * whole) || !(std::fabs(along) > 1e-3 * whole)) return false;
   for (int j = 0; j < unknowns; ++j) {
-    for (int k = 0; k < j; ++k) {
-      double sum = m[j][k];
-      for (int i = 0; i < k; ++i) sum -= m[j][i] * m[k][i];
-      m[j][k] = sum / m[k][k];
-    }
-    double pivot = m[j][j];
-    const double before = pivot;
-    for (int i = 0; i < j; ++i) pivot -= m[j][i] * m[j][i];
-    if (!(pivot > 1e-13 * before)) return false;
-    m[j][j] = std::sqrt(pivot);
+    const double share = missing[j] / along;
+    for (int k = 0; k < unknowns; ++k) (*with_secant)[j][k] = hessian[j][k] + share * missing[k];
   }
   return true;
 }
 
-void SolveFactorised(int unknowns, const MapMatrix& factor, MapVector* x) {
-  for (int j = 0; j < unknowns; ++j) {
-    for (int i = 0; i < j; ++i) (*x)[j] -= factor[j][i] * (*x)[i];
-    (*x)[j] /= factor[j][j];
-  }
-  for (int j = unknowns - 1; j >= 0; --j) {
-    for (int i = j + 1; i < unknowns; ++i) (*x)[j] -= factor[i][j] * (*x)[i];
-    (*x)[j] /= factor[j][j];
-  }
+}  // namespace
+
+std::array<bool, kMostUnknowns> HeldUnknowns(const MapModel& model, const MapPoint& point, const MapBounds& bounds,
+                                             const MapVector& gradient) {
+  return HeldAt(model, PlaceOf(model, point, bounds), bounds, gradient);
 }
 
 MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint& start, const MapBounds& bounds,
@@ -157,22 +161,30 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
   const int unknowns = model.Unknowns();
   const double exact = kExact * static_cast<double>(data.lights.count);
   MapDescent at = {start, 0, false, 0};
-  MapVector gradient = {};
-  MapMatrix hessian = {};
+  MapVector gradient = {}, next_gradient = {}, before = {}, step = {};
+  // Turned about, not copied.
+  MapMatrix matrices[3] = {};
+  MapMatrix *hessian = &matrices[0], *next_hessian = &matrices[1], *with_secant = &matrices[2];
   double damping = 1e-4;
-  bool near = false;
+  bool near = false, was_near = false, known_here = false;
   while (at.iterations < kMostIterations) {
-    at.cost = objective->Derivatives(model, data, at.point, loss,
-                                     near ? TexelObjective::Curvature::kClipped : TexelObjective::Curvature::kNone,
-                                     &gradient, &hessian);
+    if (!known_here) {
+      at.cost = objective->Derivatives(model, data, at.point, loss, near ? Curvature::kClipped : Curvature::kNone,
+                                       &gradient, hessian);
+    }
     if (known != nullptr && IsSame(at.point, known->point)) return at;
-    std::array<bool, kMostUnknowns> held = {};
-    for (int j = 0; j < unknowns; ++j) held[j] = IsHeld(model, at.point, bounds, j, gradient[j]);
+    const Place place = PlaceOf(model, at.point, bounds);
+    const std::array<bool, kMostUnknowns> held = HeldAt(model, place, bounds, gradient);
+    bool corrected = was_near && AddSecant(unknowns, held, step, before, gradient, *hessian, with_secant);
     bool moved = false;
     for (; !moved && at.iterations < kMostIterations; ++at.iterations) {
-      MapVector step;
       double promised;
-      if (!BoundedStep(model, bounds, at.point, gradient, hessian, damping, held, &step, &promised)) {
+      if (!BoundedStep(unknowns, place, gradient, corrected ? *with_secant : *hessian, damping, held, &step,
+                       &promised)) {
+        if (corrected) {
+          corrected = false;
+          continue;
+        }
         damping = std::max(10 * damping, 1e-9);
         if (damping > 1e12) return at;
         continue;
@@ -186,19 +198,40 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
       const double turn = std::hypot(step[0], step[1]);
       if (turn > 0.5) step[0] *= 0.5 / turn, step[1] *= 0.5 / turn;
       MapPoint next;
-      Moved(model, bounds, at.point, step, &next);
-      const double cost = near ? objective->Cost(model, data, next, loss)
-                               : objective->CostOfShape(model, data, loss, bounds.most_f0, &next);
+      double cost;
+      const auto attempt = [&] {
+        next = Moved(model, bounds, at.point, place, step);
+        // Near the minimum nearly all steps are taken: their derivatives come with the cost.
+        cost = near ? objective->Derivatives(model, data, next, loss, Curvature::kClipped, &next_gradient, next_hessian)
+                    : objective->CostOfShape(model, data, objective->weight(), loss, bounds.most_f0, &next);
+        return (at.cost - cost) / promised;
+      };
+      double quality = attempt();
+      if (quality <= 0 && quality > kFarBeyond && near && promised < kClose * at.cost) {
+        // The parabola through cost, slope and this cost has its minimum before.
+        for (int j = 0; j < unknowns; ++j) step[j] /= 2 - quality;
+        quality = attempt();
+        ++at.iterations;
+        damping = std::max(damping, 1e-4);
+      }
       if (cost < at.cost) {
-        const double quality = (at.cost - cost) / promised;
         damping = quality > 0.75 ? damping * 0.1 : quality < 0.25 ? damping * 4 : damping;
         damping = std::max(damping, 1e-12);
+        was_near = near && promised < kClose * at.cost;
+        before = gradient;
+        known_here = near && at.cost - cost < kNear * at.cost;
         near = at.cost - cost < kNear * at.cost;
+        if (known_here) gradient = next_gradient, std::swap(hessian, next_hessian);
         at.point = next;
         at.cost = cost;
         moved = true;
+        if (was_near && promised <= kLastStep * at.cost && quality > 0.5 && quality < 1.5) {
+          at.converged = true;
+          return at;
+        }
       } else {
-        damping = std::max(10 * damping, 1e-9);
+        damping = std::max(10 * damping, kLeastRefused);
+        corrected = false;
         if (damping > 1e12) return at;
       }
     }

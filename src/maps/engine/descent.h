@@ -28,12 +28,8 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
                    double loss, TexelObjective* objective, double tolerance = kFineTolerance,
                    const MapDescent* known = nullptr);
 
-// Whether unknown j is held, or stands at a bound against which the cost falls (gradient as of Derivatives).
-bool IsHeld(const MapModel& model, const MapPoint& point, const MapBounds& bounds, int j, double derivative);
-
-// L with L L^T = the part of `matrix` whose unknowns are not held, in place below the diagonal; rows and columns of
-// held ones become those of the identity. False where it is not positive definite.
-bool Factorise(int unknowns, const std::array<bool, kMostUnknowns>& held, MapMatrix* matrix);
-void SolveFactorised(int unknowns, const MapMatrix& factor, MapVector* x);
+// Which unknowns are held, or stand at a bound against which the cost falls (gradient as of Derivatives).
+std::array<bool, kMostUnknowns> HeldUnknowns(const MapModel& model, const MapPoint& point, const MapBounds& bounds,
+                                             const MapVector& gradient);
 
 }  // namespace lobefit

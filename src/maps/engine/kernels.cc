@@ -3,130 +3,104 @@
 #include <cmath>
 #include <cstring>
 
-// clang has no such functions for C++ yet: it takes the plain one.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define LOBEFIT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+// The same text for each instruction set; both compilers take the words of g++ or their own.
+#if defined(__clang__)
+#define LOBEFIT_WITH(set) LOBEFIT_PRAGMA(clang attribute push(__attribute__((target(set))), apply_to = function))
+#define LOBEFIT_WITHOUT LOBEFIT_PRAGMA(clang attribute pop)
 #else
-#define LOBEFIT_CLONES
+#define LOBEFIT_WITH(set) LOBEFIT_PRAGMA(GCC push_options) LOBEFIT_PRAGMA(GCC target(set))
+#define LOBEFIT_WITHOUT LOBEFIT_PRAGMA(GCC pop_options)
 #endif
+#define LOBEFIT_PRAGMA(text) _Pragma(#text)
 
 namespace lobefit {
-
 namespace {
 
-// Four lanes, on any instruction set.
-using Lanes = double __attribute__((vector_size(32)));
-static_assert(sizeof(Lanes) == LightArrays::kLanes * sizeof(double));
+namespace plain {
+constexpr std::size_t kWidth = 2;
+#include "lobefit/maps/engine/kernels-inl.h"
+}  // namespace plain
+
+#if defined(__x86_64__)
+LOBEFIT_WITH("avx2")
+namespace avx2 {
+constexpr std::size_t kWidth = 4;
+#include "lobefit/maps/engine/kernels-inl.h"
+}  // namespace avx2
+LOBEFIT_WITHOUT
+
+LOBEFIT_WITH("avx512f,avx512dq")
+namespace avx512 {
+constexpr std::size_t kWidth = 8;
+#include "lobefit/maps/engine/kernels-inl.h"
+}  // namespace avx512
+LOBEFIT_WITHOUT
+#endif
+
+// What the loops are called through.
+struct Kernels {
+  decltype(&plain::Cosines) cosines;
+  decltype(&plain::CosineDerivatives) cosine_derivatives;
+  decltype(&plain::IsotropicValue) isotropic_value;
+  decltype(&plain::IsotropicGradient) isotropic_gradient;
+  decltype(&plain::AnisotropicLobe) anisotropic_lobe;
+  decltype(&plain::SumAmplitudes) sum_amplitudes;
+  decltype(&plain::CostOf) cost_of;
+  decltype(&plain::RowsOf) rows_of;
+  decltype(&plain::AddSquares) add_squares;
+  decltype(&plain::AddGram) add_gram;
+  decltype(&plain::MovesOf) moves_of;
+};
+
+#define LOBEFIT_KERNELS(set)                                                                                 \
+  Kernels {                                                                                                  \
+    set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe, \
+        set::SumAmplitudes, set::CostOf, set::RowsOf, set::AddSquares, set::AddGram, set::MovesOf            \
+  }
+
+Kernels Choose() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return LOBEFIT_KERNELS(avx512);
+  if (__builtin_cpu_supports("avx2")) return LOBEFIT_KERNELS(avx2);
+#endif
+  return LOBEFIT_KERNELS(plain);
+}
+
+const Kernels kKernels = Choose();
 
 }  // namespace
 
-LOBEFIT_CLONES
-void DotProducts(const double* a, const double* const* b, int count, std::size_t padded, double* out) {
-  for (int k = 0; k < count; k += 4) {
-    // The last block takes its own last array again where fewer than four are left.
-    const double* with[4];
-    for (int i = 0; i < 4; ++i) with[i] = b[k + i < count ? k + i : count - 1];
-    Lanes s0 = {}, s1 = {}, s2 = {}, s3 = {};
-    for (std::size_t l = 0; l < padded; l += LightArrays::kLanes) {
-      Lanes x, y;
-      std::memcpy(&x, a + l, sizeof x);
-      std::memcpy(&y, with[0] + l, sizeof y);
-      s0 += x * y;
-      std::memcpy(&y, with[1] + l, sizeof y);
-      s1 += x * y;
-      std::memcpy(&y, with[2] + l, sizeof y);
-      s2 += x * y;
-      std::memcpy(&y, with[3] + l, sizeof y);
-      s3 += x * y;
-    }
-    const double sums[4] = {(s0[0] + s0[1]) + (s0[2] + s0[3]), (s1[0] + s1[1]) + (s1[2] + s1[3]),
-                            (s2[0] + s2[1]) + (s2[2] + s2[3]), (s3[0] + s3[1]) + (s3[2] + s3[3])};
-    for (int i = 0; i < 4 && k + i < count; ++i) out[k + i] = sums[i];
-  }
+void Cosines(const Vec3& normal, const LightArrays& lights, double* cosine) {
+  kKernels.cosines(normal, lights, cosine);
 }
-
-LOBEFIT_CLONES
-void Multiply(const double* __restrict a, const double* __restrict b, std::size_t padded, double* __restrict out) {
-  for (std::size_t l = 0; l < padded; ++l) out[l] = a[l] * b[l];
+void CosineDerivatives(const MapFrame& frame, const LightArrays& lights, double* by_t, double* by_b) {
+  kKernels.cosine_derivatives(frame, lights, by_t, by_b);
 }
-
-LOBEFIT_CLONES
-void AddResiduals(const Amplitudes& amplitudes, const double* __restrict cosine, const double* __restrict specular,
-                  const double* __restrict k, const double* __restrict live, const double* __restrict values,
-                  std::size_t padded, double* __restrict residual, double* __restrict square) {
-  const double d = amplitudes.diffuse, f = amplitudes.f0, rest = amplitudes.carried - amplitudes.f0;
-  for (std::size_t l = 0; l < padded; ++l) {
-    const double r = live[l] * (d * cosine[l] + (f + rest * k[l]) * specular[l] - values[l]);
-    residual[l] = r;
-    square[l] += r * r;
-  }
+void IsotropicValue(double alpha, const Vec3& normal, const LightArrays& lights, double* cosine, double* specular) {
+  kKernels.isotropic_value(alpha, normal, lights, cosine, specular);
 }
-
-LOBEFIT_CLONES
-void AddColumn(const Amplitudes& amplitudes, const double* __restrict dcosine, const double* __restrict dspecular,
-               const double* __restrict k, const double* __restrict residual, std::size_t padded,
-               double* __restrict column, double* __restrict row) {
-  const double d = amplitudes.diffuse, f = amplitudes.f0, rest = amplitudes.carried - amplitudes.f0;
-  for (std::size_t l = 0; l < padded; ++l) {
-    const double value = d * dcosine[l] + (f + rest * k[l]) * dspecular[l];
-    column[l] = value;
-    row[l] += residual[l] * value;
-  }
+void IsotropicGradient(double alpha, const MapFrame& frame, const LightArrays& lights, double* cosine, double* specular,
+                       double* const* dcosine, double* const* dspecular) {
+  kKernels.isotropic_gradient(alpha, frame, lights, cosine, specular, dcosine, dspecular);
 }
-
-namespace {
-
-LOBEFIT_CLONES
-void IsotropicValue(double alpha, const Vec3& n, const LightArrays& lights, const double* __restrict cosine,
-                    double* __restrict specular) {
-  const double a2 = alpha * alpha, inverse = 1 / a2;
-  const double so = std::sqrt(n.z * n.z + a2 * (1 - n.z * n.z)), factor = kInvPi * inverse / (n.z + so);
-  const double *hx = lights.h_x.data(), *hy = lights.h_y.data(), *h_z = lights.h_z.data(), *sq = lights.square.data();
-  for (std::size_t l = 0; l < lights.padded; ++l) {
-    const double c = cosine[l], hz = n.x * hx[l] + n.y * hy[l] + n.z * h_z[l];
-    const double K = hz * hz + (sq[l] - hz * hz) * inverse, s = std::sqrt(c * c + a2 * (1 - c * c));
-    specular[l] = factor * sq[l] * sq[l] / (K * K * (c + s)) * c;
-  }
+void AnisotropicLobe(const TwoWidths& widths, const LightArrays& lights, double* specular, double* const* dspecular) {
+  kKernels.anisotropic_lobe(widths, lights, specular, dspecular);
 }
-
-LOBEFIT_CLONES
-void IsotropicGradient(double alpha, const MapFrame& f, const LightArrays& lights, const double* __restrict cosine,
-                       double* __restrict specular, double* __restrict by_t, double* __restrict by_b,
-                       double* __restrict by_alpha) {
-  const Vec3 &n = f.n, &t = f.t, &b = f.b;
-  const double a2 = alpha * alpha, inverse = 1 / a2;
-  const double co = n.z, so = std::sqrt(co * co + a2 * (1 - co * co)), factor = kInvPi * inverse / (co + so);
-  const double dlog_co = -(1 + co * (1 - a2) / so) / (co + so);
-  const double dlog_alpha = -2 - a2 * (1 - co * co) / (so * (co + so));
-  const double *x = lights.x.data(), *y = lights.y.data(), *z = lights.z.data();
-  const double *hx = lights.h_x.data(), *hy = lights.h_y.data(), *h_z = lights.h_z.data(), *sq = lights.square.data();
-  for (std::size_t l = 0; l < lights.padded; ++l) {
-    const double c = cosine[l], hz = n.x * hx[l] + n.y * hy[l] + n.z * h_z[l], off = sq[l] - hz * hz;
-    const double K = hz * hz + off * inverse, s = std::sqrt(c * c + a2 * (1 - c * c));
-    const double per_c = factor * sq[l] * sq[l] / (K * K * (c + s)), value = per_c * c;
-    specular[l] = value;
-    // d ln specular by h_z, i_z and ln alpha, times specular; 1 / i_z is multiplied out: it may be 0.
-    const double over_K = 2 * value / K, over_c = value / (c + s);
-    const double by_hz = -over_K * 2 * hz * (1 - inverse), by_co = value * dlog_co;
-    const double by_ci = per_c - over_c * (1 + c * (1 - a2) / s);
-    by_alpha[l] = value * dlog_alpha + over_K * 2 * off * inverse - over_c * a2 * (1 - c * c) / s;
-    const double lit = c > 0 ? 1.0 : 0.0;
-    by_t[l] = lit * (by_hz * (t.x * hx[l] + t.y * hy[l] + t.z * h_z[l]) +
-                     by_ci * (t.x * x[l] + t.y * y[l] + t.z * z[l]) + by_co * t.z);
-    by_b[l] = lit * (by_hz * (b.x * hx[l] + b.y * hy[l] + b.z * h_z[l]) +
-                     by_ci * (b.x * x[l] + b.y * y[l] + b.z * z[l]) + by_co * b.z);
-  }
+void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums) {
+  kKernels.sum_amplitudes(terms, weight, sums);
 }
-
-}  // namespace
-
-void IsotropicLobe(double alpha, const MapFrame& frame, const LightArrays& lights, const IsotropicArrays& arrays) {
-  if (arrays.dspecular == nullptr) {
-    IsotropicValue(alpha, frame.n, lights, arrays.cosine, arrays.specular);
-  } else {
-    IsotropicGradient(alpha, frame, lights, arrays.cosine, arrays.specular, arrays.dspecular[0], arrays.dspecular[1],
-                      arrays.dspecular[2]);
-  }
+double CostOf(const LightTerms& terms, double* weight) { return kKernels.cost_of(terms, weight); }
+double RowsOf(const LightTerms& terms, Curvature curvature, const RowArrays& arrays, double* gradient) {
+  return kKernels.rows_of(terms, curvature, arrays, gradient);
+}
+void AddSquares(const LightTerms& terms, const double* weight, MapMatrix* matrix) {
+  kKernels.add_squares(terms, weight, matrix);
+}
+void AddGram(const double* factor, const double* const* rows, int count, std::size_t padded, MapMatrix* matrix) {
+  kKernels.add_gram(factor, rows, count, padded, matrix);
+}
+void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved) {
+  kKernels.moves_of(terms, arrays, inverse, moved);
 }
 
 }  // namespace lobefit

@@ -2,6 +2,7 @@
 // their order are the same in all of them, and products and sums stay separate instructions: so are the bits.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "lobefit/maps/engine/lights.h"
@@ -9,29 +10,72 @@
 
 namespace lobefit {
 
-// out[k] = sum over the padded lights of a[l] b[k][l].
-void DotProducts(const double* a, const double* const* b, int count, std::size_t padded, double* out);
-
-void Multiply(const double* a, const double* b, std::size_t padded, double* out);
+using MapVector = std::array<double, kMostUnknowns>;
+using MapMatrix = std::array<std::array<double, kMostUnknowns>, kMostUnknowns>;
 
 // A channel's amplitudes, in the texel's unit: diffuse cosine + (f0 + (carried - f0) k) specular.
 struct Amplitudes {
   double diffuse, f0, carried;
 };
-// residual = live (prediction - value), and its square added to `square`.
-void AddResiduals(const Amplitudes& amplitudes, const double* cosine, const double* specular, const double* k,
-                  const double* live, const double* values, std::size_t padded, double* residual, double* square);
-// column = derivative of the prediction, row += residual column.
-void AddColumn(const Amplitudes& amplitudes, const double* dcosine, const double* dspecular, const double* k,
-               const double* residual, std::size_t padded, double* column, double* row);
 
-// What the isotropic lobe needs beside the lights: pointers of ShapeArrays; dspecular null: no derivatives.
-struct IsotropicArrays {
-  const double* cosine;
-  double* specular;
-  double* const* dspecular;  // 3
+// Sums over lights of w A A, w A B, w B B, w A y and w B y, where A is the cosine, B = (1 - k) specular and y what
+// remains of a value without carried k specular.
+struct AmplitudeSums {
+  double aa, ab, bb, ay, by;
 };
-// shape.cc gives the formulas. `alpha`: the width.
-void IsotropicLobe(double alpha, const MapFrame& frame, const LightArrays& lights, const IsotropicArrays& arrays);
+
+// L = (a 0; b c) in the frame of the normal, and what the frame changes by where the normal turns along its axes.
+struct TwoWidths {
+  double a, b, c;
+  MapFrame frame;
+  MapFrame turned[2];
+};
+
+// What a texel's predictions are made of, over its padded lights: of shape.h, values, and how they are weighed.
+struct LightTerms {
+  int shape = 2, channels = 1;  // numbers of the shape (2: no lobe), channels (1 or 3)
+  std::size_t padded = 0;
+  const double *cosine = nullptr, *specular = nullptr, *k = nullptr, *live = nullptr;
+  std::array<const double*, 2> dcosine = {};
+  std::array<const double*, kMostShape> dspecular = {};
+  std::array<const double*, kMostChannels> values = {};
+  std::array<Amplitudes, kMostChannels> amplitudes = {};
+  double loss = 1;
+};
+
+// Arrays of RowsOf: residuals r, weight w of the loss, coefficient of (J^T r)(J^T r)^T, and J^T r by unknowns.
+struct RowArrays {
+  std::array<double*, kMostChannels> residual = {};
+  double *weight = nullptr, *bend = nullptr;
+  std::array<double*, kMostUnknowns> rows = {};
+};
+
+// How the loss bends the second derivatives: not at all, so that the quadratic lies above the cost of a linear model
+// (far from the minimum); clipped so that the matrix has no negative curvature (near it); or as it is (for errors).
+enum class Curvature { kNone, kClipped, kWhole };
+
+// shape.cc gives the formulas; 0 below the horizon.
+void Cosines(const Vec3& normal, const LightArrays& lights, double* cosine);
+void CosineDerivatives(const MapFrame& frame, const LightArrays& lights, double* by_t, double* by_b);
+void IsotropicValue(double alpha, const Vec3& normal, const LightArrays& lights, double* cosine, double* specular);
+// dspecular: 3 arrays.
+void IsotropicGradient(double alpha, const MapFrame& frame, const LightArrays& lights, double* cosine, double* specular,
+                       double* const* dcosine, double* const* dspecular);
+// dspecular: 5 arrays, or null.
+void AnisotropicLobe(const TwoWidths& widths, const LightArrays& lights, double* specular, double* const* dspecular);
+
+// By channels.
+void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums);
+// c^2 / 2 sum ln(1 + |r|^2 / c^2) with r of all channels of a light together, whose weight in the loss is stored unless
+// null.
+double CostOf(const LightTerms& terms, double* weight);
+// The same, with what derivatives are made of; gradient by unknowns.
+double RowsOf(const LightTerms& terms, Curvature curvature, const RowArrays& arrays, double* gradient);
+// Adds sum w J^T J, below the diagonal.
+void AddSquares(const LightTerms& terms, const double* weight, MapMatrix* matrix);
+// Adds sum over lights of factor row_j row_k, below the diagonal.
+void AddGram(const double* factor, const double* const* rows, int count, std::size_t padded, MapMatrix* matrix);
+// moved[j][l]: by how much unknown j moves where light l is left out (errors.cc); `inverse` has zeros for held unknowns.
+void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved);
 
 }  // namespace lobefit

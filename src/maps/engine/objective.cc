@@ -4,34 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "lobefit/maps/engine/kernels.h"
-
 namespace lobefit {
 namespace {
 
-// Sum of ln(1 + x_l) >= 0 with one logarithm a few terms: e -> e + x + e x is the product less 1, exact near 0.
-double SumOfLog1p(const std::vector<double>& x, double factor, std::size_t padded) {
-  constexpr std::size_t kFlush = 32;
-  double sum = 0;
-  for (std::size_t begin = 0; begin < padded; begin += kFlush) {
-    double lanes[LightArrays::kLanes] = {};
-    for (std::size_t l = begin; l < std::min(padded, begin + kFlush); l += LightArrays::kLanes) {
-      for (std::size_t lane = 0; lane < LightArrays::kLanes; ++lane) {
-        const double t = factor * x[l + lane];
-        lanes[lane] += t + lanes[lane] * t;
-      }
-    }
-    for (const double lane : lanes) sum += std::log1p(lane);
-  }
-  return sum;
-}
-
-Amplitudes AmplitudesOf(const MapModel& model, const TexelData& data, const MapPoint& point, int channel) {
-  const auto c = static_cast<std::size_t>(channel);
-  // Without Schlick's term k is 0.
-  if (model.lobe == MapLobe::kNone) return {point.diffuse[c], 0, 0};
-  return {point.diffuse[c], point.f0[c], 1 / data.scale};
-}
+double OrInfinite(double cost) { return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity(); }
 
 }  // namespace
 
@@ -50,155 +26,98 @@ void BestAmplitudes(const AmplitudeSums& sums, double most_b, double* a, double*
 
 void TexelData::Resize(std::size_t padded) {
   lights.Resize(padded);
-  for (std::vector<double>& v : value) v.resize(padded);
+  for (LightVector& v : value) v.resize(lights.padded);
 }
 
 void TexelObjective::Resize(std::size_t padded) {
   shape_.Resize(padded);
-  for (std::vector<double>* a : {&square_, &weight_, &bend_, &lobe_, &carried_, &weighted_, &zero_}) a->resize(padded);
-  for (std::vector<double>& r : residual_) r.resize(padded);
-  for (std::vector<double>& r : rows_) r.resize(padded);
-  for (auto& channel : jacobian_) {
-    for (std::vector<double>& j : channel) j.resize(padded);
-  }
+  for (LightVector* a : {&weight_, &trial_weight_, &bend_}) a->resize(padded);
+  for (LightVector& r : residual_) r.resize(padded);
+  for (LightVector& r : row_) r.resize(padded);
+  for (std::size_t c = 0; c < kMostChannels; ++c) rows_.residual[c] = residual_[c].data();
+  for (std::size_t j = 0; j < kMostUnknowns; ++j) rows_.rows[j] = row_[j].data();
+  rows_.weight = weight_.data(), rows_.bend = bend_.data();
 }
 
 void TexelObjective::Shape(const MapModel& model, const TexelData& data, const MapPoint& point, bool gradient) {
   const LightArrays& lights = data.lights;
   EvaluateShape(model.lobe, point, lights, gradient, &shape_);
-  for (std::size_t l = 0; model.lobe != MapLobe::kNone && l < lights.padded; ++l) {
-    lobe_[l] = (1 - lights.k[l]) * shape_.specular[l];
-    carried_[l] = lights.k[l] / data.scale;
+  terms_.shape = model.Shape(), terms_.channels = model.channels, terms_.padded = lights.padded;
+  terms_.cosine = shape_.cosine.data(), terms_.specular = shape_.specular.data();
+  terms_.k = lights.k.data(), terms_.live = lights.live.data();
+  for (std::size_t j = 0; j < terms_.dcosine.size(); ++j) terms_.dcosine[j] = shape_.dcosine[j].data();
+  for (std::size_t j = 0; j < terms_.dspecular.size(); ++j) terms_.dspecular[j] = shape_.dspecular[j].data();
+  for (std::size_t c = 0; c < kMostChannels; ++c) {
+    terms_.values[c] = data.value[c].data();
+    terms_.amplitudes[c] = {0, 0, model.lobe == MapLobe::kNone ? 0 : 1 / data.scale};
   }
 }
 
-double TexelObjective::Residuals(const MapModel& model, const TexelData& data, const MapPoint& point, double loss) {
-  const LightArrays& lights = data.lights;
-  const bool lobe = model.lobe != MapLobe::kNone;
-  std::fill(square_.begin(), square_.begin() + static_cast<std::ptrdiff_t>(lights.padded), 0.0);
-  for (int c = 0; c < model.channels; ++c) {
-    AddResiduals(AmplitudesOf(model, data, point, c), shape_.cosine.data(),
-                 lobe ? shape_.specular.data() : zero_.data(), lights.k.data(), lights.live.data(),
-                 data.value[c].data(), lights.padded, residual_[c].data(), square_.data());
+void TexelObjective::TakeAmplitudes(const MapModel& model, const MapPoint& point) {
+  for (std::size_t c = 0; c < kMostChannels; ++c) {
+    terms_.amplitudes[c].diffuse = point.diffuse[c];
+    // Without Schlick's term k is 0.
+    terms_.amplitudes[c].f0 = model.lobe == MapLobe::kNone ? 0 : point.f0[c];
   }
-  const double cost = 0.5 * loss * loss * SumOfLog1p(square_, 1 / (loss * loss), lights.padded);
-  return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 
 double TexelObjective::Cost(const MapModel& model, const TexelData& data, const MapPoint& point, double loss) {
   Shape(model, data, point, false);
-  return Residuals(model, data, point, loss);
+  TakeAmplitudes(model, point);
+  terms_.loss = loss;
+  return OrInfinite(CostOf(terms_, nullptr));
 }
 
-void TexelObjective::Reweigh(const TexelData& data, double loss) {
-  const double inverse = 1 / (loss * loss);
-  for (std::size_t l = 0; l < data.lights.padded; ++l) weight_[l] = data.lights.live[l] / (1 + square_[l] * inverse);
+double TexelObjective::CostAtBestAmplitudes(const MapModel& model, const LightVector& weight, double most_f0,
+                                            double* next_weight, MapPoint* point) {
+  AmplitudeSums sums[kMostChannels] = {};
+  SumAmplitudes(terms_, weight.data(), sums);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(model.channels); ++c) {
+    BestAmplitudes(sums[c], most_f0, &point->diffuse[c], &point->f0[c]);
+  }
+  TakeAmplitudes(model, *point);
+  return OrInfinite(CostOf(terms_, next_weight));
 }
 
-double TexelObjective::CostOfShape(const MapModel& model, const TexelData& data, double loss, double most_f0,
+double TexelObjective::CostOfShape(const MapModel& model, const TexelData& data, const LightVector& weight, double loss,
+                                   double most_f0, MapPoint* point) {
+  Shape(model, data, *point, false);
+  terms_.loss = loss;
+  return CostAtBestAmplitudes(model, weight, most_f0, nullptr, point);
+}
+
+double TexelObjective::CostOfStart(const MapModel& model, const TexelData& data, double loss, double most_f0,
                                    MapPoint* point) {
   Shape(model, data, *point, false);
-  const std::size_t padded = data.lights.padded;
-  const bool lobe = model.lobe != MapLobe::kNone;
-  const double *w = weight_.data(), *A = shape_.cosine.data(), *B = lobe_.data();
-  // Sums of w A and w B with A, B and the values, from which what Schlick's term adds whatever f0 is, is taken.
-  AmplitudeSums sums[kMostChannels] = {};
-  for (int a = 0; a < model.PerChannel(); ++a) {
-    double* scaled = weighted_.data();
-    Multiply(w, a == 0 ? A : B, padded, scaled);
-    double carried = 0, products[2 + kMostChannels];
-    const double* with[2 + kMostChannels] = {A, lobe ? B : A};
-    for (int c = 0; c < model.channels; ++c) with[2 + c] = data.value[c].data();
-    DotProducts(scaled, with, 2 + model.channels, padded, products);
-    if (lobe && model.schlick) {
-      for (std::size_t l = 0; l < padded; ++l) square_[l] = carried_[l] * shape_.specular[l];
-      const double* one = square_.data();  // filled anew by Residuals
-      DotProducts(scaled, &one, 1, padded, &carried);
-    }
-    for (int c = 0; c < model.channels; ++c) {
-      if (a == 0) sums[c].aa = products[0], sums[c].ab = lobe ? products[1] : 0, sums[c].ay = products[2 + c] - carried;
-      if (a == 1) sums[c].bb = products[1], sums[c].by = products[2 + c] - carried;
-    }
-  }
-  for (int c = 0; c < model.channels; ++c) BestAmplitudes(sums[c], most_f0, &point->diffuse[c], &point->f0[c]);
-  return Residuals(model, data, *point, loss);
+  terms_.loss = loss;
+  CostAtBestAmplitudes(model, data.lights.live, most_f0, trial_weight_.data(), point);
+  return CostAtBestAmplitudes(model, trial_weight_, most_f0, nullptr, point);
 }
 
 double TexelObjective::Derivatives(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,
                                    Curvature curvature, MapVector* gradient, MapMatrix* hessian) {
   Shape(model, data, point, true);
-  const double cost = Residuals(model, data, point, loss);
-  const LightArrays& lights = data.lights;
-  const std::size_t padded = lights.padded;
-  const bool lobe = model.lobe != MapLobe::kNone;
-  const int shape = model.Shape(), unknowns = model.Unknowns(), channels = model.channels;
-  constexpr double kLeast = 0.05;  // of the weight that curvature along the residual keeps where it is clipped
-  for (std::size_t l = 0; l < padded; ++l) {
-    const double w = lights.live[l] / (1 + square_[l] / (loss * loss));
-    weight_[l] = w;
-    const double whole = -2 * w * w / (loss * loss);
-    bend_[l] = curvature == Curvature::kWhole  ? whole
-               : curvature == Curvature::kNone ? 0
-                                               : std::max(whole, -(1 - kLeast) * w / (square_[l] + 1e-300));
-  }
-  for (int j = 0; j < shape; ++j) {
-    std::vector<double>& v = rows_[j];
-    std::fill(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(padded), 0.0);
-    for (int c = 0; c < channels; ++c) {
-      AddColumn(AmplitudesOf(model, data, point, c), j < 2 ? shape_.dcosine[j].data() : zero_.data(),
-                lobe ? shape_.dspecular[j].data() : zero_.data(), lights.k.data(), residual_[c].data(), padded,
-                jacobian_[c][j].data(), v.data());
-    }
-  }
-  for (int c = 0; c < channels; ++c) {
-    Multiply(residual_[c].data(), shape_.cosine.data(), padded, rows_[model.DiffuseAt(c)].data());
-    if (lobe) Multiply(residual_[c].data(), lobe_.data(), padded, rows_[model.F0At(c)].data());
-  }
-  // The loss's part, bend (J^T r)(J^T r)^T, then each channel's w J^T J: amplitudes are the same functions in all.
-  const double* rows[kMostUnknowns];
-  for (int j = 0; j < unknowns; ++j) rows[j] = rows_[j].data();
-  DotProducts(weight_.data(), rows, unknowns, padded, gradient->data());
-  double* scaled = weighted_.data();
-  const auto weigh = [&](const double* by, const double* what) { Multiply(by, what, padded, scaled); };
-  const bool bent = curvature != Curvature::kNone;
-  for (int j = 0; j < unknowns; ++j) {
-    std::fill((*hessian)[j].begin(), (*hessian)[j].end(), 0.0);
-    if (!bent) continue;
-    weigh(bend_.data(), rows[j]);
-    DotProducts(scaled, rows, j + 1, padded, (*hessian)[j].data());
-  }
-  const double* amplitudes[2] = {shape_.cosine.data(), lobe_.data()};
-  const int per_channel = model.PerChannel();
-  double products[kMostShape + 2];
-  for (int a = 0; a < per_channel; ++a) {
-    weigh(weight_.data(), amplitudes[a]);
-    DotProducts(scaled, amplitudes, a + 1, padded, products);
-    for (int c = 0; c < channels; ++c) {
-      for (int b = 0; b <= a; ++b) (*hessian)[model.DiffuseAt(c) + a][model.DiffuseAt(c) + b] += products[b];
-    }
-  }
-  for (int c = 0; c < channels; ++c) {
-    const double* columns[kMostShape + 2];
-    for (int j = 0; j < shape; ++j) {
-      weigh(weight_.data(), jacobian_[c][j].data());
-      for (int k = 0; k <= j; ++k) columns[k] = jacobian_[c][k].data();
-      for (int a = 0; a < per_channel; ++a) columns[j + 1 + a] = amplitudes[a];
-      DotProducts(scaled, columns, j + 1 + per_channel, padded, products);
-      for (int k = 0; k <= j; ++k) (*hessian)[j][k] += products[k];
-      for (int a = 0; a < per_channel; ++a) (*hessian)[model.DiffuseAt(c) + a][j] += products[j + 1 + a];
-    }
-  }
+  TakeAmplitudes(model, point);
+  terms_.loss = loss;
+  const double cost = RowsOf(terms_, curvature, rows_, gradient->data());
+  const int unknowns = model.Unknowns();
+  for (int j = 0; j < unknowns; ++j) (*hessian)[j].fill(0);
+  // The loss's part, bend (J^T r)(J^T r)^T, then each channel's w J^T J.
+  if (curvature != Curvature::kNone) AddGram(bend_.data(), rows_.rows.data(), unknowns, terms_.padded, hessian);
+  AddSquares(terms_, weight_.data(), hessian);
   for (int j = 0; j < unknowns; ++j) {
     for (int k = 0; k < j; ++k) (*hessian)[k][j] = (*hessian)[j][k];
   }
-  return cost;
+  return OrInfinite(cost);
 }
 
-double TexelObjective::Jacobian(const MapModel& model, int channel, int unknown, std::size_t light) const {
-  if (unknown < model.Shape()) return jacobian_[channel][unknown][light];
-  if (unknown == model.DiffuseAt(channel)) return shape_.cosine[light];
-  if (model.lobe != MapLobe::kNone && unknown == model.F0At(channel)) return lobe_[light];
-  return 0;
+std::array<const double*, kMostUnknowns> TexelObjective::Moves(const MapModel& model, const TexelData& data,
+                                                               const MapMatrix& inverse) {
+  terms_.padded = data.lights.padded;
+  MovesOf(terms_, rows_, inverse, rows_.rows.data());
+  std::array<const double*, kMostUnknowns> moved = {};
+  for (int j = 0; j < model.Unknowns(); ++j) moved[j] = row_[static_cast<std::size_t>(j)].data();
+  return moved;
 }
 
 }  // namespace lobefit

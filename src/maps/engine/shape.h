@@ -1,8 +1,6 @@
 // The two functions of the light that a texel's values are made of, with derivatives by the shape.
 #pragma once
 
-#include <vector>
-
 #include "lobefit/maps/engine/lights.h"
 #include "lobefit/maps/engine/model.h"
 
@@ -11,7 +9,7 @@ namespace lobefit {
 // Arrays over the padded lights: cosine = max(i_z, 0), specular = D G1(i) G1(o) / (4 o_z), and for each number of the
 // shape its derivative; the first two are turns of the normal by n -> n + a t + b b at a = b = 0. 0 below the horizon.
 struct ShapeArrays {
-  std::vector<double> cosine, specular, dcosine[2], dspecular[kMostShape];
+  LightVector cosine, specular, dcosine[2], dspecular[kMostShape];
   void Resize(std::size_t padded);
 };
 

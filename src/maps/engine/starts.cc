@@ -27,50 +27,38 @@ Vec3 Solve3(const double A[6], const Vec3& b) {  // xx xy xz yy yz zz
 
 }  // namespace
 
-MapPoint LambertStart(const MapModel& model, const TexelData& data, const std::vector<double>& mean,
-                      const MapBounds& bounds, const MapPoint& fixed) {
-  MapPoint point = fixed;
+MapPoint LambertStart(const MapModel& model, const TexelData& data, const LightVector& mean, const MapBounds& bounds,
+                      double loss, TexelObjective* objective, LightVector* dull) {
+  MapPoint point;
   const LightArrays& lights = data.lights;
+  for (std::size_t l = 0; l < lights.padded; ++l) (*dull)[l] = mean[l] <= 1 ? lights.live[l] : 0;
   if (!bounds.normal_held) {
-    double A[6] = {};
-    Vec3 b = {0, 0, 0};
-    for (std::size_t l = 0; l < lights.count; ++l) {
-      if (mean[l] > 1) continue;
-      const Vec3 w = {lights.x[l], lights.y[l], lights.z[l]};
-      A[0] += w.x * w.x, A[1] += w.x * w.y, A[2] += w.x * w.z, A[3] += w.y * w.y, A[4] += w.y * w.z, A[5] += w.z * w.z;
-      b = b + mean[l] * w;
-    }
-    point.normal = AboveHorizon(Solve3(A, b), 0.1);
+    const double* rows[4] = {lights.x.data(), lights.y.data(), lights.z.data(), mean.data()};
+    MapMatrix sums = {};
+    AddGram(dull->data(), rows, 4, lights.padded, &sums);
+    const double A[6] = {sums[0][0], sums[1][0], sums[2][0], sums[1][1], sums[2][1], sums[2][2]};
+    point.normal = AboveHorizon(Solve3(A, {sums[3][0], sums[3][1], sums[3][2]}), 0.1);
   }
-  for (int c = 0; c < model.channels; ++c) {
-    double over = 0, under = 1e-300;
-    for (std::size_t l = 0; l < lights.count; ++l) {
-      const double cosine = point.normal.x * lights.x[l] + point.normal.y * lights.y[l] + point.normal.z * lights.z[l];
-      if (cosine <= 0 || mean[l] > 1) continue;
-      over += cosine * data.value[c][l], under += cosine * cosine;
-    }
-    point.diffuse[c] = std::max(0.0, over / under);
-    point.f0[c] = 0;
-  }
+  objective->CostOfShape(model, data, *dull, loss, 0, &point);
   return point;
 }
 
-Vec3 HighlightNormal(const TexelData& data, const std::vector<double>& mean, const MapPoint& lambert,
-                     const MapBounds& bounds) {
+Vec3 HighlightNormal(const TexelData& data, const LightVector& mean, const MapPoint& lambert, const MapBounds& bounds) {
   const LightArrays& lights = data.lights;
   Vec3 sum = {0, 0, 0};
   double most = 0;
+  const Vec3 n = lambert.normal;
+  const double diffuse = lambert.diffuse[0];
   const auto excess = [&](std::size_t l) {
-    const Vec3& n = lambert.normal;
     const double cosine = std::max(0.0, n.x * lights.x[l] + n.y * lights.y[l] + n.z * lights.z[l]);
-    return mean[l] - cosine * lambert.diffuse[0];
+    return mean[l] - cosine * diffuse;
   };
   for (std::size_t l = 0; l < lights.count; ++l) most = std::max(most, excess(l));
   for (std::size_t l = 0; l < lights.count; ++l) {
     const double e = excess(l);
     if (e < 0.5 * most) continue;
     const double weight = e * e / std::sqrt(lights.square[l]);
-    sum = sum + Vec3{weight * lights.h_x[l], weight * lights.h_y[l], weight * lights.h_z[l]};
+    sum = sum + weight * Vec3{lights.x[l], lights.y[l], lights.z[l] + 1};
   }
   return AboveHorizon(sum, std::max(0.1, bounds.least_normal_z));
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lobefit/maps/engine/factor.h"
+
 namespace lobefit {
 namespace {
 
@@ -55,7 +57,7 @@ TexelFitter::TexelFitter(const MapRules& rules, const std::vector<Vec3>& lights,
   MoveLights(lights);
   data_.Resize(lights_.padded);
   objective_.Resize(lights_.padded);
-  mean_.resize(lights_.padded);
+  mean_.resize(lights_.padded), dull_.resize(lights_.padded);
 }
 
 void TexelFitter::MoveLights(const std::vector<Vec3>& lights) {
@@ -93,6 +95,7 @@ bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit)
     mean_[used++] = all_means_[l] / scale;
   }
   data_.lights.Close(used);
+  std::fill(mean_.begin() + static_cast<std::ptrdiff_t>(used), mean_.end(), 0.0);
   for (int c = 0; c < channels_; ++c) {
     std::fill(data_.value[c].begin() + static_cast<std::ptrdiff_t>(used), data_.value[c].end(), 0.0);
   }
@@ -113,11 +116,7 @@ MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent&
       point.normal = normals[k];
       const double width = bounds_.width_held ? log_alpha : std::log(alpha);
       point.width = {width, 0, width};
-      // Twice: what the first answer cannot meet, as a cast shadow, weighs less in the second.
-      objective_.ForgetWeights(data_);
-      objective_.CostOfShape(model, data_, rules_.loss, bounds_.most_f0, &point);
-      objective_.Reweigh(data_, rules_.loss);
-      const double cost = objective_.CostOfShape(model, data_, rules_.loss, bounds_.most_f0, &point);
+      const double cost = objective_.CostOfStart(model, data_, rules_.loss, bounds_.most_f0, &point);
       if (cost < costs[k]) costs[k] = cost, starts[k] = point;
       if (bounds_.width_held) break;
     }
@@ -153,8 +152,8 @@ TexelFit TexelFitter::Fit(const float* values, std::size_t stride, double log_al
   const MapModel none = {MapLobe::kNone, channels_, rules_.schlick};
   // Coarse where it only serves as a start and to be compared with.
   const bool lobe_wanted = rules_.lobe != MapLobe::kNone;
-  MapDescent best = Descend(none, data_, LambertStart(none, data_, mean_, bounds_, {}), bounds_, rules_.loss,
-                            &objective_, lobe_wanted ? kCoarseTolerance : kFineTolerance);
+  MapDescent best = Descend(none, data_, LambertStart(none, data_, mean_, bounds_, rules_.loss, &objective_, &dull_),
+                            bounds_, rules_.loss, &objective_, lobe_wanted ? kCoarseTolerance : kFineTolerance);
   MapModel model = none;
   if (lobe_wanted) {
     const MapModel with = {rules_.lobe, channels_, rules_.schlick};
@@ -249,9 +248,8 @@ void TexelFitter::Report(const MapModel& model, const MapDescent& best, TexelFit
   MapVector gradient = {};
   MapMatrix hessian = {};
   const int unknowns = model.Unknowns();
-  objective_.Derivatives(model, data_, point, rules_.loss, TexelObjective::Curvature::kClipped, &gradient, &hessian);
-  std::array<bool, kMostUnknowns> held = {};
-  for (int j = 0; j < unknowns; ++j) held[j] = IsHeld(model, point, bounds_, j, gradient[j]);
+  objective_.Derivatives(model, data_, point, rules_.loss, Curvature::kClipped, &gradient, &hessian);
+  const std::array<bool, kMostUnknowns> held = HeldUnknowns(model, point, bounds_, gradient);
   MapVector coupling = {};
   for (int j = 0; j < unknowns; ++j) coupling[j] = held[j] ? 0 : hessian[j][2];
   MapVector answer = coupling;

@@ -74,7 +74,8 @@ class TexelFitter {
   TexelData data_;
   TexelObjective objective_;
   MapBounds bounds_;
-  std::vector<double> mean_, sorted_, all_means_;
+  LightVector mean_, dull_;
+  std::vector<double> sorted_, all_means_;
   double slope_ = 0, curvature_ = 0;
 };
 

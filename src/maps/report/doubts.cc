@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "lobefit/maps/engine/factor.h"
+
 namespace lobefit {
 namespace {
 
@@ -112,7 +114,7 @@ void DoubtMeter::Add(const std::vector<double>& values, const RelitTexel& texel,
   factor_ = {};
   for (std::size_t j = 0; j < columns_.size(); ++j) {
     for (std::size_t k = 0; k <= j; ++k) {
-      for (std::size_t l = 0; l < values.size(); ++l) factor_[j][k] += weights_[l] * columns_[j][l] * columns_[k][l];
+      for (std::size_t l = 0; l < values.size(); ++l) factor_[k][j] += weights_[l] * columns_[j][l] * columns_[k][l];
     }
   }
   if (!Factorise(static_cast<int>(columns_.size()), {}, &factor_)) return;

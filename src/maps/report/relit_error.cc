@@ -104,6 +104,7 @@ Judgement JudgeLights(const Maps& maps, const Stack& stack, const std::vector<st
 RelitPair Relit(const Maps& maps, const Stack& stack, std::size_t light, const Fallback& fallback) {
   Stack one = stack;
   one.images = {stack.images[light]}, one.lights = {stack.lights[light]};
+  if (!stack.parts.empty()) one.parts = {stack.parts[light]};
   if (!stack.white.empty()) one.white = {stack.white[light]};
   RelitStack relighting(maps, one, fallback);
   StackReader reader(one);

@@ -60,7 +60,10 @@ bool IsImageName(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return extension == ".png" || extension == ".exr";
+  for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"}) {
+    if (extension == known) return true;
+  }
+  return false;
 }
 
 StackFiles ReadDome(const std::filesystem::path& path) {

@@ -27,11 +27,15 @@ class ImageRows {
   int bits_ = 0;
 };
 
-// By the first bytes: PNG (not interlaced) or OpenEXR scan lines. Throws InputError.
+// By the first bytes: PNG (not interlaced), JPEG (not progressive), TIFF or OpenEXR. Pixels come as they are stored: a
+// mark that turns the picture is refused. Memory: some rows, or a row of tiles. Throws InputError.
 std::unique_ptr<ImageRows> OpenImage(const std::filesystem::path& path);
 
-// Of each kind, for OpenImage.
+// Of each kind, for OpenImage. TIFF: 8 and 16 bits, floating point of 16 and 32; strips and tiles of any compression
+// that libtiff has; rows of tiles of at most 64 MB.
 std::unique_ptr<ImageRows> OpenPngRows(const std::filesystem::path& path);
+std::unique_ptr<ImageRows> OpenJpegRows(const std::filesystem::path& path);
+std::unique_ptr<ImageRows> OpenTiffRows(const std::filesystem::path& path);
 std::unique_ptr<ImageRows> OpenExrRows(const std::filesystem::path& path);
 
 }  // namespace lobefit

@@ -9,6 +9,7 @@
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 #include "lobefit/base/toml_file.h"
+#include "lobefit/maps/stack/exr_parts.h"
 #include "lobefit/maps/stack/layouts.h"
 
 namespace lobefit {
@@ -77,6 +78,19 @@ void ReadImages(const Manifest& manifest, const toml::table& table, Stack* stack
   stack->images = manifest.Matching(manifest.Text(table, "images"), "images");
 }
 
+// Where `images` names one OpenEXR file of several parts, these are the images: all, or those that the light file names.
+void ReadParts(const std::vector<std::filesystem::path>& named, const std::filesystem::path& folder, Stack* stack) {
+  if (stack->images.size() != 1) return;
+  const std::filesystem::path file = stack->images[0];
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || !IsExrImage(file)) return;
+  const ExrParts parts(file);
+  if (parts.names().size() == 1) return;
+  for (const std::filesystem::path& name : named) stack->parts.push_back(name.lexically_relative(folder).string());
+  if (named.empty()) stack->parts = parts.names();
+  stack->images.assign(stack->parts.size(), file);
+}
+
 // The positions that the file of lights gave, and the scale of the picture.
 void ReadNear(const Manifest& manifest, const toml::table& table, const toml::table& lights, Stack* stack) {
   const toml::table* plane = table["plane"].as_table();
@@ -104,7 +118,9 @@ void ReadLights(const Manifest& manifest, const toml::table& table, Stack* stack
     StackFiles read = ReadLightFile(path);
     stack->lights = read.stack.lights;
     if (stack->images.empty()) stack->images = read.stack.images;
+    ReadParts(read.stack.images, path.parent_path(), stack);
   } else {
+    ReadParts({}, {}, stack);
     for (const std::vector<double>& row : ReadTable(path, 3)) {
       const std::string place = fmt::format("{}, light {}", PrintableName(path), stack->lights.size() + 1);
       stack->lights.push_back({LightDirection(row[0], row[1], row[2], place), {1, 1, 1}, {row[0], row[1], row[2]}});

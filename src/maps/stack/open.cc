@@ -1,14 +1,14 @@
 #include <algorithm>
-#include <cstring>
+#include <fstream>
 
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
-#include "lobefit/maps/stack/image_rows.h"
+#include "lobefit/base/text.h"
 #include "lobefit/maps/stack/layouts.h"
-#include "lobefit/maps/stack/stack.h"
+#include "lobefit/maps/stack/reader.h"
 
 namespace lobefit {
 namespace {
@@ -59,21 +59,28 @@ void ReadMask(const Path& file, Stack* stack) {
   if (stack->Texels() == 0) throw InputError(PrintableName(file) + ": the mask leaves no texel");
 }
 
+std::string NameOf(const Stack& stack, std::size_t image) {
+  const std::string file = PrintableName(stack.images[image]);
+  return stack.parts.empty() ? file : fmt::format("{}, part '{}'", file, Excerpt(stack.parts[image]));
+}
+
 void CheckImages(const StackOptions& options, Stack* stack) {
   int bits = 0;
-  std::vector<Path> all = stack->images;
-  all.insert(all.end(), stack->white.begin(), stack->white.end());
-  if (!stack->dark.empty()) all.push_back(stack->dark);
-  for (const Path& path : all) {
-    const std::unique_ptr<ImageRows> image = OpenImage(path);
+  std::vector<Path> others = stack->white;
+  if (!stack->dark.empty()) others.push_back(stack->dark);
+  StackImages images(*stack);
+  for (std::size_t i = 0; i < stack->images.size() + others.size(); ++i) {
+    const bool is_own = i < stack->images.size();
+    const std::unique_ptr<ImageRows> image = is_own ? images.Open(i) : OpenImage(others[i - stack->images.size()]);
     if (stack->width == 0) {
       stack->width = image->width(), stack->height = image->height(), stack->channels = image->channels();
       bits = image->bits();
     }
     if (image->width() != stack->width || image->height() != stack->height || image->channels() != stack->channels) {
       throw InputError(fmt::format("{}: {} x {} pixels, {} channels, but {} has {} x {} and {}; all must agree",
-                                   PrintableName(path), image->width(), image->height(), image->channels(),
-                                   PrintableName(stack->images[0]), stack->width, stack->height, stack->channels));
+                                   is_own ? NameOf(*stack, i) : PrintableName(others[i - stack->images.size()]),
+                                   image->width(), image->height(), image->channels(), NameOf(*stack, 0), stack->width,
+                                   stack->height, stack->channels));
     }
     bits = std::min(bits, image->bits());
   }
@@ -107,6 +114,18 @@ void CheckLights(const Stack& stack) {
         "{}: {} of {} lights are behind the surface (z <= 0); z must point to the camera: change the sign of z",
         PrintableName(stack.path), below, count));
   }
+}
+
+// Of the one file of a stack, which may be larger than the memory.
+std::string DigestOfPieces(const Path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string digests, piece(std::size_t{1} << 24, '\0');
+  do {
+    in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    digests += Sha256(std::string_view(piece).substr(0, static_cast<std::size_t>(in.gcount())));
+  } while (in);
+  if (!in.eof()) throw InputError(PrintableName(path) + ": cannot be read to its end");
+  return Sha256(digests);
 }
 
 }  // namespace
@@ -156,7 +175,12 @@ std::string DigestOf(const Stack& stack) {
     }
   }
   all.append(stack.mask.begin(), stack.mask.end());
-  for (const std::filesystem::path& image : stack.images) all += Sha256(FileBytes(image).bytes());
+  for (const std::string& part : stack.parts) all += fmt::format("part {} {};", part.size(), part);
+  if (!stack.parts.empty()) {
+    all += DigestOfPieces(stack.images[0]);
+  } else {
+    for (const std::filesystem::path& image : stack.images) all += Sha256(FileBytes(image).bytes());
+  }
   if (!stack.dark.empty()) all += "dark" + Sha256(FileBytes(stack.dark).bytes());
   for (const std::filesystem::path& image : stack.white) all += "white" + Sha256(FileBytes(image).bytes());
   if (!stack.white.empty()) all += fmt::format("{}", stack.white_albedo);

@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -86,17 +85,5 @@ class PngRows : public ImageRows {
 }  // namespace
 
 std::unique_ptr<ImageRows> OpenPngRows(const std::filesystem::path& path) { return std::make_unique<PngRows>(path); }
-
-std::unique_ptr<ImageRows> OpenImage(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  char head[4] = {};
-  if (!in) throw InputError(PrintableName(path) + ": cannot be opened; is it there, and may it be read?");
-  in.read(head, 4);
-  if (std::memcmp(head, "\x89PNG", 4) == 0) return OpenPngRows(path);
-  if (std::memcmp(head, "\x76\x2f\x31\x01", 4) == 0) return OpenExrRows(path);
-  throw InputError(PrintableName(path) +
-                   ": neither PNG nor OpenEXR, which are what images of a stack may be; convert it (16 bits a channel "
-                   "keep what 8 lose)");
-}
 
 }  // namespace lobefit

@@ -25,17 +25,23 @@ float ValueOf(const Response& response, double stored, bool integer) {
 
 }  // namespace
 
+std::unique_ptr<ImageRows> StackImages::Open(std::size_t image) {
+  if (stack_.parts.empty()) return OpenImage(stack_.images[image]);
+  if (!parts_) parts_.emplace(stack_.images[image]);
+  return parts_->Open(stack_.parts[image]);
+}
+
 StackReader::StackReader(const Stack& stack) : stack_(stack) {
   AllowFiles(stack.images.size() + stack.white.size() + 1);
   bool integer = false;
-  const auto open = [&](const std::filesystem::path& path) {
-    std::unique_ptr<ImageRows> image = OpenImage(path);
+  const auto known = [&](std::unique_ptr<ImageRows> image) {
     integer = integer || image->bits() <= 16;
     return image;
   };
-  for (const std::filesystem::path& path : stack.images) images_.push_back(open(path));
-  for (const std::filesystem::path& path : stack.white) white_.push_back(open(path));
-  if (!stack.dark.empty()) dark_ = open(stack.dark);
+  StackImages images(stack);
+  for (std::size_t i = 0; i < stack.images.size(); ++i) images_.push_back(known(images.Open(i)));
+  for (const std::filesystem::path& path : stack.white) white_.push_back(known(OpenImage(path)));
+  if (!stack.dark.empty()) dark_ = known(OpenImage(stack.dark));
   row_.resize(stack.width * stack.channels);
   dark_row_.assign(row_.size(), 0), white_row_.resize(row_.size());
   if (!integer) return;

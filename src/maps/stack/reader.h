@@ -3,9 +3,10 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "lobefit/maps/stack/image_rows.h"
+#include "lobefit/maps/stack/exr_parts.h"
 #include "lobefit/maps/stack/stack.h"
 
 namespace lobefit {
@@ -17,6 +18,18 @@ namespace lobefit {
 struct StackBand {
   std::size_t first_row = 0, rows = 0;
   std::vector<float> values;
+};
+
+// The images of a stack one by one, or side by side; one open file an image, or one for all parts.
+class StackImages {
+ public:
+  explicit StackImages(const Stack& stack) : stack_(stack) {}
+  // Throws InputError.
+  std::unique_ptr<ImageRows> Open(std::size_t image);
+
+ private:
+  const Stack& stack_;
+  std::optional<ExrParts> parts_;
 };
 
 // Decodes all images together, from the top; memory: one row and the decoder's state an image. One file an image is

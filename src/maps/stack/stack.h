@@ -36,6 +36,7 @@ struct Stack {
   std::filesystem::path path;  // as given
   std::string layout;          // "DiLiGenT folder", ...
   std::vector<std::filesystem::path> images;
+  std::vector<std::string> parts;  // where all images are parts of one OpenEXR file: their names; else empty
   std::vector<StackLight> lights;  // one an image
   std::optional<NearLights> near;  // else they are distant
   std::size_t width = 0, height = 0, channels = 0;
