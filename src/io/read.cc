@@ -11,6 +11,7 @@
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/no_value.h"
+#include "lobefit/io/csv/reader.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/text/decoded_file.h"
 #include "lobefit/io/wrong_kind.h"
@@ -151,6 +152,20 @@ const Format& RecogniseFormat(const InputFile& file) {
   throw InputError(file.path.string() + ": is not in a format that can be read; it begins with '" +
                    Excerpt(file.bytes.substr(0, file.bytes.find('\n')), 24) + "' and has " +
                    std::to_string(file.bytes.size()) + " bytes. Known formats: " + KnownFormats());
+}
+
+bool HoldsMeasurement(const std::filesystem::path& path, bool any_rows) {
+  try {
+    const DecodedFile file(path);
+    try {
+      const InputFile input = {path, file.bytes()};
+      return RecogniseFormat(input).name != std::string_view("csv") || any_rows || NamesDirections(input);
+    } catch (const InputError&) {
+      return false;
+    }
+  } catch (const InputError&) {
+    return true;
+  }
 }
 
 ReadOptions WithKeys(ReadOptions options, const std::vector<std::string>& keys) {

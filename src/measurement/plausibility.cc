@@ -8,6 +8,7 @@
 #include <map>
 
 #include "lobefit/base/text.h"
+#include "lobefit/math/statistics.h"
 #include "lobefit/measurement/incidence.h"
 
 namespace lobefit {
@@ -47,6 +48,7 @@ class Checks {
     CheckLight();
     CheckLevel();
     if (samples_.solid_angle.empty()) CheckMarks();
+    if (!samples_.sigma.empty()) CheckSigma();
     return std::move(remarks_);
   }
 
@@ -238,6 +240,21 @@ class Checks {
                          ": if the detector saturates there, use --exclude \"value>=" + Short(largest * (1 - 1e-3)) +
                          "\"");
     }
+  }
+
+  // Ratios of stated standard deviations to the values: their median above 1 is hardly an instrument's.
+  void CheckSigma() {
+    std::vector<double> ratios;
+    for (const std::size_t i : chosen_) {
+      const double value = std::fabs(MeanOfChannels(samples_, i));
+      if (value > 0) ratios.push_back(samples_.sigma[i] / value);
+    }
+    if (ratios.empty()) return;
+    const double median = Median(std::move(ratios));
+    if (median <= 1) return;
+    remarks_.push_back("half of the stated uncertainties are above " + Short(100 * median) +
+                       " % of the value: are they in another unit, such as percent? Write it into their name, as in "
+                       "'uncertainty [%]'");
   }
 
   const Samples& samples_;

@@ -83,5 +83,13 @@ TEST(Plausibility, MarksAndSaturation) {
   EXPECT_TRUE(Says(Hemisphere(saturated), "share the largest value, 0.8"));
 }
 
+TEST(Plausibility, UncertaintiesAboveTheirValues) {
+  Measurement m = Hemisphere(Lobe);
+  for (std::size_t i = 0; i < m.samples.size(); ++i) m.samples.sigma.push_back(0.05 * m.samples.values[0][i]);
+  EXPECT_FALSE(Says(m, "stated uncertainties"));
+  for (double& sigma : m.samples.sigma) sigma *= 100;
+  EXPECT_TRUE(Says(m, "half of the stated uncertainties are above 500 % of the value"));
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -256,6 +256,9 @@ class AngleFinder {
       std::vector<std::string> names;
       for (const CsvColumn& column : columns_) names.push_back(Excerpt(column.name));
       Fail("no column holds " + missing + "; the columns are " + Excerpt(Join(names), 200) +
+           (missing.find("(theta_") == std::string::npos
+                ? ""
+                : "; an angle that all rows share is stated by a line '# theta_i: 30', or by FILE:theta_i=30") +
            "; allowed: " + AllowedColumns());
     }
     const auto alpha = std::find_if(columns_.begin(), columns_.end(), [](const CsvColumn& column) {

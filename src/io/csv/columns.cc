@@ -246,6 +246,16 @@ void ParseUnit(CsvColumn* column) {
       break;
     case ColumnRole::kSigma:
       if (unit == "%" || unit == "percent") column->relative = true;
+      // "k=2" below "U".
+      if (unit.starts_with("k=") && ParseDouble(std::string_view(unit).substr(2)).value_or(0) > 0) {
+        column->coverage_factor = *ParseDouble(std::string_view(unit).substr(2));
+        column->problem.clear();
+        column->unit.clear();
+      } else if (unit == "ppm" || unit == "rel" || unit == "rel.") {
+        column->relative = true;
+      } else if (!column->relative && !ParseValueScale(unit)) {
+        refuse("1/sr, %, ppm, dB, a power of ten as in 1e-3/sr");
+      }
       break;
     default:
       break;

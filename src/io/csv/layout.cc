@@ -4,12 +4,14 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/angles.h"
 #include "lobefit/io/csv/mapping.h"
 #include "lobefit/io/csv/name_rules.h"
+#include "lobefit/io/csv/polarised_columns.h"
 #include "lobefit/io/csv/row_conditions.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
@@ -45,7 +47,7 @@ class LayoutBuilder {
     const std::string value_column = options_.value_column.value_or(header_.keys.value_column);
     if (!value_column.empty()) {
       ChooseValueColumn(value_column);
-    } else if (!ChooseFixedGroups()) {
+    } else if (!ChooseFixedGroups() && !ChoosePolarised()) {
       ChooseChannels();
     }
     FindWavelength();
@@ -113,23 +115,6 @@ class LayoutBuilder {
 
   // "f_R" is f_r where no "f_G" and "f_B" stand beside it, and a channel where they do.
   void ResolveLetters() {
-    // "f_s" is the scattered light's, but beside "f_p" one of two polarisations.
-    for (const CsvColumn& column : columns_) {
-      const NameWords name = SplitName(column.name);
-      if (name.words.size() < 2 || name.words.back() != "p" || column.role == ColumnRole::kCoordinate) continue;
-      for (const CsvColumn& other : columns_) {
-        NameWords sibling = SplitName(other.name);
-        if (sibling.words.empty() || sibling.words.back() != "s" || options_.value_column ||
-            !header_.keys.value_column.empty())
-          continue;
-        sibling.words.back() = "p";
-        std::optional<ValueKind> kind;
-        if (sibling.words != name.words || !NamesValue(sibling.words[0], &kind)) continue;
-        Fail("the columns " + Quoted(other) + " and " + Quoted(column) +
-             " are two polarisations; choose one with --value-column, or write their mean, f_r of unpolarised light, "
-             "into a column of its own");
-      }
-    }
     for (CsvColumn& column : columns_) {
       if (column.role != ColumnRole::kValue) continue;
       const NameWords split = SplitName(column.name);
@@ -194,6 +179,27 @@ class LayoutBuilder {
     return true;
   }
 
+  // "f_s" is the scattered light's, but beside "f_p" one of two polarisations. A column of their mean is used as it is.
+  bool ChoosePolarised() {
+    const PolarisedColumns polarised = FindPolarisedColumns(columns_);
+    for (std::size_t k = 0; k < polarised.columns.size(); ++k) {
+      CsvColumn& column = columns_[polarised.columns[k]];
+      column.role = polarised.mean_is_given ? ColumnRole::kIgnored : ColumnRole::kValue;
+      NamesValue(SplitName(column.name).words[0], &column.value_kind);
+      const std::string unit = std::exchange(column.unit, {});
+      SetUnit(unit, &column);
+      if (!polarised.mean_is_given) layout_.groups.push_back({{}, {polarised.columns[k]}, polarised.states[k]});
+    }
+    if (layout_.groups.empty()) return false;
+    if (std::any_of(columns_.begin(), columns_.end(),
+                    [](const CsvColumn& column) { return column.role == ColumnRole::kPolarisation; }))
+      Fail("polarisations stand in a column and in the names of others; choose one with --value-column");
+    layout_.channels.names = {"Y"};
+    measurement_->conventions["value-column"] =
+        "one for each polarisation: " + std::to_string(layout_.groups.size()) + " columns";
+    return true;
+  }
+
   void ChooseChannels() {
     std::vector<std::size_t> mono, spectral;
     std::map<std::string, std::size_t> letters;
@@ -242,8 +248,8 @@ class LayoutBuilder {
       const std::size_t other = FindOther();
       if (other != kNoColumn) {
         Fail("the column " + Quoted(columns_[other]) +
-             " can be f_r or pi f_r, or something else; say it with --value-column " + Excerpt(columns_[other].name) +
-             " and --value-kind f|pi-f");
+             " can be f_r, pi f_r, f_r times a cosine or something else; say it with --value-column \"" +
+             Excerpt(columns_[other].name) + "\" and --value-kind f|pi-f|f-cos-o|f-cos-i");
       }
       Fail("no column holds values; allowed: " + AllowedColumns() + "; or choose one with --value-column");
     }
