@@ -47,6 +47,7 @@ class Checks {
     Gather();
     CheckLight();
     CheckLevel();
+    if (samples_.solid_angle.empty()) CheckPeaks();
     if (samples_.solid_angle.empty()) CheckMarks();
     if (!samples_.sigma.empty()) CheckSigma();
     return std::move(remarks_);
@@ -61,6 +62,7 @@ class Checks {
     std::array<double, kRings* kSectors> sum = {};
     std::array<std::size_t, kRings* kSectors> count = {};
     double largest = -kInfinity, near_mirror = -kInfinity, near_light = -kInfinity;
+    Vec3 brightest = {0, 0, 1};  // the viewer of the largest value
     bool has_mirror = false, has_light = false, out_of_plane = false;
     double least_theta_o = kInfinity, largest_theta_o = -kInfinity;
   };
@@ -86,6 +88,7 @@ class Checks {
       const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
       incidence.sum[cell] += value;
       ++incidence.count[cell];
+      if (value > incidence.largest) incidence.brightest = wo;
       incidence.largest = std::max(incidence.largest, value);
       if (wo.z * wi.z - wo.x * wi.x - wo.y * wi.y > near) {
         incidence.has_mirror = true;
@@ -117,6 +120,34 @@ class Checks {
                        " the largest values lie about the light's own direction and none about the mirror's; if "
                        "azimuths or signed angles count from the specular side, use "
                        "--incident propagation (a retro-reflector looks like this too)");
+  }
+
+  // Lobes about the normal at every incidence are those of angles that count from the mirror direction; at the complement
+  // of the mirror's polar angle, of angles that count from the surface.
+  void CheckPeaks() {
+    std::size_t asked = 0, normal = 0, complement = 0;
+    const double near = std::cos(8 * kPi / 180);
+    for (const Incidence& incidence : incidences_) {
+      const Vec3& wi = incidence.wi;
+      const double theta = std::acos(std::min(1.0, wi.z)), degree = kPi / 180;
+      if (theta < 24 * degree || theta > 70 * degree || std::fabs(theta - kPi / 4) < 12 * degree) continue;
+      if (!incidence.has_mirror || incidence.least_theta_o > -8 * degree) continue;
+      ++asked;
+      if (!(incidence.largest > 2 * std::max(incidence.near_mirror, 0.0))) continue;
+      const double tangent = std::hypot(wi.x, wi.y), scale = wi.z / tangent;
+      const Vec3 turned = {-wi.x * scale, -wi.y * scale, tangent};
+      normal += incidence.brightest.z > near ? 1 : 0;
+      complement += Dot(incidence.brightest, turned) > near ? 1 : 0;
+    }
+    if (asked > 0 && 3 * normal >= 2 * asked) {
+      remarks_.push_back("in " + std::to_string(normal) + " of " + Count(asked, "incident direction") +
+                         " the largest values lie about the normal and not the mirror direction: do the angles count "
+                         "from that? --columns delta_theta=NAME");
+    } else if (asked > 0 && 3 * complement >= 2 * asked) {
+      remarks_.push_back("in " + std::to_string(complement) + " of " + Count(asked, "incident direction") +
+                         " the largest values lie where the mirror direction would be, were one of the polar angles "
+                         "counted from the surface: --columns elevation_o=NAME, or elevation_i=NAME");
+    }
   }
 
   // Directional albedo from the means over rings; nothing where the samples do not cover the hemisphere.

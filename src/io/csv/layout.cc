@@ -173,6 +173,13 @@ class LayoutBuilder {
         layout_.groups.push_back({{{columns_[i].coordinate, columns_[i].fixed}}, {i}});
     }
     if (layout_.groups.empty()) return false;
+    const auto value = std::find_if(columns_.begin(), columns_.end(),
+                                    [](const CsvColumn& column) { return column.role == ColumnRole::kValue; });
+    if (value != columns_.end()) {
+      Fail("the column " + Quoted(columns_[layout_.groups[0].values[0]]) +
+           " holds values at one angle, by its name, but " + Quoted(*value) +
+           " holds values too; say what they are by --columns, or choose one with --value-column");
+    }
     layout_.channels.names = {"Y"};
     measurement_->conventions["value-column"] =
         "one for each angle: " + std::to_string(layout_.groups.size()) + " columns";
@@ -265,6 +272,15 @@ class LayoutBuilder {
   std::size_t FindOther() const {
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       if (columns_[i].role == ColumnRole::kOtherValue && SplitName(columns_[i].name).words.size() < 3) return i;
+    }
+    // "BRDF_raw", "relative BRDF"
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      std::optional<ValueKind> kind;
+      const NameList words = SplitName(columns_[i].name).words;
+      const bool value = std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+        return word.size() > 2 && NamesValue(word, &kind);
+      });
+      if (value && columns_[i].role == ColumnRole::kUnknown) return i;
     }
     return kNoColumn;
   }

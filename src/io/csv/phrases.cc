@@ -86,11 +86,13 @@ bool ReadCoordinate(std::string_view key, std::string_view word, CsvKeys* keys) 
     keys->wavelength_nm = std::round(known->ToNm(quantity->number) * 1e6) / 1e6;
     return true;
   }
-  if (column.role != ColumnRole::kCoordinate || column.coordinate == Coordinate::kTheta ||
-      column.coordinate == Coordinate::kPhi)
-    return false;
+  if (column.role != ColumnRole::kCoordinate || column.coordinate == Coordinate::kTheta) return false;
   const std::optional<AngleUnit> unit = quantity->unit.empty() ? column.angle_unit : ParseAngleUnit(quantity->unit);
   if (!quantity->unit.empty() && !unit) return false;
+  if (column.coordinate == Coordinate::kPhi) {
+    keys->lone_azimuth = std::string(key) + ": " + std::string(word);
+    return true;
+  }
   keys->Fix({column.coordinate, quantity->number, unit, column.form});
   return true;
 }

@@ -79,6 +79,30 @@ TEST(CsvLayouts, VectorsAndHalfAngles) {
   EXPECT_TRUE(relative.isotropic);
 }
 
+TEST(CsvLayouts, NamesThatReadInTwoWaysAreAsked) {
+  EXPECT_NE(MessageOf("theta_i [0.1 deg],theta_r [0.1 deg],BRDF\n100,200,1\n")
+                .find("holds values at one angle, by its name, "
+                      "but 'BRDF' holds values too"),
+            std::string::npos);
+  EXPECT_NE(MessageOf("theta_s,AOI=0.2 rad,AOI=30 deg\n10,1,2\n").find("have different units"), std::string::npos);
+  EXPECT_NE(MessageOf("theta_i,theta_r,BRDF_raw,BRDF_corrected\n10,20,1,2\n").find("--value-column \"BRDF_raw\""),
+            std::string::npos);
+  EXPECT_NE(MessageOf("AOI: 30\nAzimuth: 90\ntheta_s,BSDF\n10,1\n").find("the head states 'Azimuth: 90', which"),
+            std::string::npos);
+  EXPECT_EQ(ReadText("AOI: 30\nAzimuth: 90\ntheta_s,phi_s,BSDF\n10,20,1\n").samples.size(), 1U);
+}
+
+TEST(CsvLayouts, UnitsOfChannels) {
+  const Measurement rgb = ReadText("theta_i,theta_o,R (%),G (%),B (%)\n10,20,50,40,30\n");
+  EXPECT_DOUBLE_EQ(rgb.samples.values[2][0], 0.3);
+  EXPECT_DOUBLE_EQ(ReadText("theta_i,theta_o,Y [%]\n10,20,50\n").samples.values[0][0], 0.5);
+  const Measurement spectral = ReadText("theta_i;theta_o;450 nm;550nm\ndeg;deg;%;%\n10;20;50;40\n");
+  EXPECT_DOUBLE_EQ(spectral.samples.values[1][0], 0.4);
+  EXPECT_EQ(spectral.channels.wavelengths_nm, (std::vector<double>{450, 550}));
+  EXPECT_NE(MessageOf("theta_i;theta_o;450 nm\ndeg;deg;furlong\n10;20;50\n").find("has the unit 'furlong'"),
+            std::string::npos);
+}
+
 TEST(CsvLayouts, AnAngleOfADirectionByItsUnit) {
   ExpectTheTwo(ReadText("AOI (deg),observation (deg),BRDF\n30,-20,0.5\n30,45,0.25\n"));
   ExpectTheTwo(ReadText("theta_src,theta_rcv,brdfPerSr\n30,-20,0.5\n30,45,0.25\n"));
