@@ -123,28 +123,30 @@ class Checks {
   }
 
   // Lobes about the normal at every incidence are those of angles that count from the mirror direction; at the complement
-  // of the mirror's polar angle, of angles that count from the surface.
+  // of the mirror's polar angle, of angles that count from the surface. At grazing incidence lobes lie off the mirror
+  // direction by themselves.
   void CheckPeaks() {
-    std::size_t asked = 0, normal = 0, complement = 0;
-    const double near = std::cos(8 * kPi / 180);
+    std::size_t asked = 0, normal = 0, apart = 0, complement = 0;
+    const double near = std::cos(8 * kPi / 180), degree = kPi / 180;
     for (const Incidence& incidence : incidences_) {
       const Vec3& wi = incidence.wi;
-      const double theta = std::acos(std::min(1.0, wi.z)), degree = kPi / 180;
-      if (theta < 24 * degree || theta > 70 * degree || std::fabs(theta - kPi / 4) < 12 * degree) continue;
+      const double theta = std::acos(std::min(1.0, wi.z));
+      if (theta < 24 * degree || theta > 60 * degree) continue;
       if (!incidence.has_mirror || incidence.least_theta_o > -8 * degree) continue;
+      const bool peak = incidence.largest > 1.25 * std::max(incidence.near_mirror, 0.0);
       ++asked;
-      if (!(incidence.largest > 2 * std::max(incidence.near_mirror, 0.0))) continue;
+      normal += peak && incidence.brightest.z > near ? 1 : 0;
+      if (std::fabs(theta - kPi / 4) < 12 * degree) continue;  // its complement is near the mirror direction
       const double tangent = std::hypot(wi.x, wi.y), scale = wi.z / tangent;
-      const Vec3 turned = {-wi.x * scale, -wi.y * scale, tangent};
-      normal += incidence.brightest.z > near ? 1 : 0;
-      complement += Dot(incidence.brightest, turned) > near ? 1 : 0;
+      ++apart;
+      complement += peak && Dot(incidence.brightest, {-wi.x * scale, -wi.y * scale, tangent}) > near ? 1 : 0;
     }
     if (asked > 0 && 3 * normal >= 2 * asked) {
       remarks_.push_back("in " + std::to_string(normal) + " of " + Count(asked, "incident direction") +
                          " the largest values lie about the normal and not the mirror direction: do the angles count "
                          "from that? --columns delta_theta=NAME");
-    } else if (asked > 0 && 3 * complement >= 2 * asked) {
-      remarks_.push_back("in " + std::to_string(complement) + " of " + Count(asked, "incident direction") +
+    } else if (apart > 0 && 3 * complement >= 2 * apart) {
+      remarks_.push_back("in " + std::to_string(complement) + " of " + Count(apart, "incident direction") +
                          " the largest values lie where the mirror direction would be, were one of the polar angles "
                          "counted from the surface: --columns elevation_o=NAME, or elevation_i=NAME");
     }

@@ -252,8 +252,8 @@ class LayoutBuilder {
       }
       if (!candidates.empty())
         Fail("several columns can be the value: " + Excerpt(Join(names), 200) + "; choose one with --value-column");
-      const std::size_t other = FindOther();
-      if (other != kNoColumn) {
+      const std::size_t other = FindPossibleValue(columns_);
+      if (other < columns_.size()) {
         Fail("the column " + Quoted(columns_[other]) +
              " can be f_r, pi f_r, f_r times a cosine or something else; say it with --value-column \"" +
              Excerpt(columns_[other].name) + "\" and --value-kind f|pi-f|f-cos-o|f-cos-i");
@@ -267,22 +267,6 @@ class LayoutBuilder {
       if (column.wavelength_nm > 0) layout_.channels.wavelengths_nm.push_back(column.wavelength_nm);
     }
     if (candidates[0].size() == 1) measurement_->conventions["value-column"] = columns_[candidates[0][0]].name;
-  }
-
-  std::size_t FindOther() const {
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (columns_[i].role == ColumnRole::kOtherValue && SplitName(columns_[i].name).words.size() < 3) return i;
-    }
-    // "BRDF_raw", "relative BRDF"
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      std::optional<ValueKind> kind;
-      const NameList words = SplitName(columns_[i].name).words;
-      const bool value = std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-        return word.size() > 2 && NamesValue(word, &kind);
-      });
-      if (value && columns_[i].role == ColumnRole::kUnknown) return i;
-    }
-    return kNoColumn;
   }
 
   // The unit of a column that does not say it: what all of the first rows can be.
@@ -430,6 +414,9 @@ class LayoutBuilder {
       layout_.value_kind = *column.value_kind;
       origin = "column name";
     }
+    const bool percent = column.value_scale && column.value_scale->factor == 0.01;
+    if (origin == "default" && column.role == ColumnRole::kChannel && percent)
+      Fail("the column " + Quoted(column) + " in percent can be f_r or pi f_r; say it with --value-kind f|pi-f");
     measurement_->conventions["value-kind"] = std::string(Name(layout_.value_kind)) + " (" + origin + ")";
     SetValueScale(column);
   }

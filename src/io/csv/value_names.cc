@@ -270,6 +270,21 @@ bool NamesValue(const std::string& joined, std::optional<ValueKind>* kind) {
   return value != nullptr;
 }
 
+std::size_t FindPossibleValue(const std::vector<CsvColumn>& columns) {
+  std::size_t possible = columns.size();
+  for (std::size_t i = columns.size(); i-- > 0;) {
+    const NameList words = SplitName(columns[i].name).words;
+    const bool value = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+      return word.size() > 2 && FindValue(word) != nullptr;
+    });
+    if (value && columns[i].role == ColumnRole::kUnknown) possible = i;
+  }
+  for (std::size_t i = columns.size(); i-- > 0;) {
+    if (columns[i].role == ColumnRole::kOtherValue && SplitName(columns[i].name).words.size() < 3) possible = i;
+  }
+  return possible;
+}
+
 bool ClassifyValueOfChannel(const NameList& words, CsvColumn* column) {
   if (words.size() < 2) return false;
   std::optional<ValueKind> kind;

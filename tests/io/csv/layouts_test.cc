@@ -93,10 +93,14 @@ TEST(CsvLayouts, NamesThatReadInTwoWaysAreAsked) {
 }
 
 TEST(CsvLayouts, UnitsOfChannels) {
-  const Measurement rgb = ReadText("theta_i,theta_o,R (%),G (%),B (%)\n10,20,50,40,30\n");
+  ReadOptions brdf;
+  brdf.value_kind = ValueKind::kBrdf;
+  const Measurement rgb = ReadText("theta_i,theta_o,R (%),G (%),B (%)\n10,20,50,40,30\n", brdf);
   EXPECT_DOUBLE_EQ(rgb.samples.values[2][0], 0.3);
-  EXPECT_DOUBLE_EQ(ReadText("theta_i,theta_o,Y [%]\n10,20,50\n").samples.values[0][0], 0.5);
-  const Measurement spectral = ReadText("theta_i;theta_o;450 nm;550nm\ndeg;deg;%;%\n10;20;50;40\n");
+  EXPECT_DOUBLE_EQ(ReadText("# value-kind: f\ntheta_i,theta_o,Y [%]\n10,20,50\n").samples.values[0][0], 0.5);
+  EXPECT_NE(MessageOf("theta_i,theta_o,Y [%]\n10,20,50\n").find("'Y [%]' in percent can be f_r or pi f_r"),
+            std::string::npos);
+  const Measurement spectral = ReadText("theta_i;theta_o;450 nm;550nm\ndeg;deg;%;%\n10;20;50;40\n", brdf);
   EXPECT_DOUBLE_EQ(spectral.samples.values[1][0], 0.4);
   EXPECT_EQ(spectral.channels.wavelengths_nm, (std::vector<double>{450, 550}));
   EXPECT_NE(MessageOf("theta_i;theta_o;450 nm\ndeg;deg;furlong\n10;20;50\n").find("has the unit 'furlong'"),
