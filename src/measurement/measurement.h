@@ -87,6 +87,9 @@ struct Measurement {
   // (default)"}.
   std::map<std::string, std::string> conventions;
   StatedInstrument instrument;
+  // Comment lines and titles of the file that state nothing which was understood, as written, without their marks: for
+  // who writes the measurement anew.
+  std::vector<std::string> comments;
   // Remarks for people: rectified noise recognised, columns ignored.
   std::vector<std::string> remarks;
 };

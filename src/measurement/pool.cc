@@ -130,6 +130,16 @@ void MergeWords(const std::vector<Measurement>& parts, Measurement* pooled) {
         all = "as each file states";
       }
     }
+    for (const std::string& comment : part.comments) {
+      const bool of_all = std::all_of(parts.begin(), parts.end(), [&](const Measurement& other) {
+        return std::find(other.comments.begin(), other.comments.end(), comment) != other.comments.end();
+      });
+      if (!of_all) {
+        pooled->comments.push_back(part.source + ": " + comment);
+      } else if (&part == parts.data()) {
+        pooled->comments.push_back(comment);
+      }
+    }
     for (const std::string& remark : part.remarks) {
       const std::string own = part.source + ": " + remark;
       const bool known = std::any_of(parts.begin(), parts.end(), [&](const Measurement& other) {

@@ -44,6 +44,8 @@ class HeaderReader {
     const bool named = FindNames();
     ReadTitleKeys();
     if (!named) FailWithoutNames();
+    // Names may stand in a comment.
+    std::erase(header_.comments, std::string(CommentText(header_.names)));
     mapping_.Fix(file_, header_.names_line, header_.columns, &header_.keys);
     if (mapping_.head()) header_.head_coordinate = mapping_.head();
     TakeUnits();
@@ -271,15 +273,27 @@ class HeaderReader {
 
   void ReadCommentKeys() {
     for (std::size_t i = 0; i < data_; ++i) {
-      if (lines_[i].comment) ReadKey(file_, lines_[i].number, CommentText(lines_[i].text), &header_.keys);
+      if (!lines_[i].comment) continue;
+      const std::string_view text = CommentText(lines_[i].text);
+      if (!ReadKey(file_, lines_[i].number, text, &header_.keys) && !text.empty())
+        header_.comments.emplace_back(PlainComment(text));
     }
   }
 
   // Titles above the names: "Wavelength (nm): 633;;;;", "AOI;30;deg".
   void ReadTitleKeys() {
     for (std::size_t i = 0; i < data_; ++i) {
-      if (i != names_ && !lines_[i].comment)
-        ReadKey(file_, lines_[i].number, SplitFields(lines_[i].text, header_.separator), &header_.keys);
+      if (i == names_ || lines_[i].comment) continue;
+      const Fields fields = SplitFields(lines_[i].text, header_.separator);
+      if (ReadKey(file_, lines_[i].number, fields, &header_.keys) || i > names_) continue;
+      std::vector<std::string> filled;
+      std::string storage;
+      for (const std::string_view field : fields) {
+        if (!Trim(field).empty()) filled.emplace_back(Unquoted(field, &storage));
+      }
+      // More are a heading of columns.
+      if (header_.separator == kBlankSeparator) filled = {std::string(Trim(lines_[i].text))};
+      if (filled.size() <= 2) header_.comments.push_back(Join(filled, " "));
     }
   }
 

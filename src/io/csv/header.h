@@ -25,6 +25,7 @@ struct CsvHeader {
   // Of a table whose names are numbers, "theta\phi;-180;-150": what the numbers are.
   std::optional<Coordinate> head_coordinate;
   std::vector<std::string> remarks;
+  std::vector<std::string> comments;  // and titles, which are no keys
   // The first rows as fields, for what only the numbers can tell.
   std::vector<std::vector<std::string>> first_rows;
 };

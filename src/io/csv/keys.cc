@@ -82,10 +82,23 @@ const std::vector<std::string>& KnownKeys() {
   return keys;
 }
 
-// A key that is none, though it has a word of one: said, so that a unit does not go unread in silence.
-void RemarkOnResemblance(std::size_t line, std::string_view key, const std::string& name, std::string_view word,
-                         CsvKeys* keys) {
-  if (name.empty() || name.size() > 30 || Trim(word).empty()) return;
+// What concerns the values and is not used, and a key that is none, though it has a word of one: said, so that a unit
+// does not go unread in silence.
+void RemarkOnUnused(std::size_t line, std::string_view key, const std::string& name, std::string_view word,
+                    CsvKeys* keys) {
+  if (name.empty() || name.size() > 30 || Trim(word).empty() || key == "comment") return;
+  const ColumnRole role = ClassifyColumn(key).role;
+  if (role == ColumnRole::kPolarisation && !IsUnpolarised(ToLower(word))) {
+    keys->remarks.push_back("line " + std::to_string(line) + ": the polarisation is '" + Excerpt(word, 40) +
+                            "': the values are f_r of that light, not of unpolarised light");
+    return;
+  }
+  if (role == ColumnRole::kSigma && (name.find("cert") != std::string::npos || word.ends_with('%'))) {
+    keys->remarks.push_back(
+        "line " + std::to_string(line) + ": the uncertainty that '" + Excerpt(key, 40) +
+        "' states for all values was not used; write it into a column, as 'relative uncertainty (%)'");
+    return;
+  }
   const auto has = [&](std::string_view part) { return name.find(part) != std::string::npos; };
   const bool resembles = has("unit") || has("sense") || has("convention") || has("cosine") || has("scale") ||
                          has("factor") || ParseAngleUnit(word) || ParseIncidentSense(word) || ParseValueKind(word);
@@ -177,20 +190,11 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
     if (!ParseRepeatedRows(word))
       FailAtLine(file, line, "repeated is '" + Excerpt(word) + "'; allowed are first, mean");
     keys->repeated = std::string(word);
-  } else if (ClassifyColumn(key).role == ColumnRole::kPolarisation) {
-    if (!IsUnpolarised(ToLower(word)))
-      keys->remarks.push_back("line " + std::to_string(line) + ": the polarisation is '" + Excerpt(word, 40) +
-                              "': the values are f_r of that light, not of unpolarised light");
-  } else if (ClassifyColumn(key).role == ColumnRole::kSigma &&
-             (name.find("cert") != std::string::npos || word.ends_with('%'))) {
-    keys->remarks.push_back(
-        "line " + std::to_string(line) + ": the uncertainty that '" + Excerpt(key, 40) +
-        "' states for all values was not used; write it into a column, as 'relative uncertainty (%)'");
   } else if (!ReadUnits(name, word, keys) && !ReadCoordinate(key, word, keys)) {
     // A misspelt key would leave the file read in the wrong unit without a word.
     const std::string suggestion = name.size() > 5 ? DidYouMean(name, KnownKeys()) : "";
     if (!suggestion.empty()) FailAtLine(file, line, "the key '" + Excerpt(key) + "' is not known" + suggestion);
-    RemarkOnResemblance(line, key, name, word, keys);
+    RemarkOnUnused(line, key, name, word, keys);
     return false;
   }
   return true;

@@ -31,6 +31,10 @@ std::string_view CommentText(std::string_view line) {
   return Trim(line);
 }
 
+std::string_view PlainComment(std::string_view comment) {
+  return comment.starts_with(kCommentKey) ? comment.substr(kCommentKey.size()) : comment;
+}
+
 CsvLines::CsvLines(std::string_view bytes)
     : bytes_(bytes), lines_(bytes), has_quotes_(bytes.find('"') != std::string_view::npos) {}
 

@@ -16,6 +16,11 @@ inline constexpr char kBlankSeparator = '\0';
 bool IsComment(std::string_view line);
 std::string_view CommentText(std::string_view line);
 
+// What the writer puts before a comment that would be read as a key of the written file.
+inline constexpr std::string_view kCommentKey = "comment: ";
+// Without it.
+std::string_view PlainComment(std::string_view comment);
+
 // Lines of a CSV; a quoted field may hold line ends, and its line goes on.
 class CsvLines {
  public:

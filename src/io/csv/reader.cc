@@ -141,6 +141,7 @@ class CsvReader {
     StateTurn(&measurement.samples);
     if (!header_.keys.exclude.empty()) measurement.conventions["exclude"] = header_.keys.exclude;
     measurement.remarks = std::move(notes_.remarks);
+    measurement.comments = std::move(header_.comments);
     measurement.isotropic = layout_.directions.IsIsotropic();
     for (std::string& remark : FindImplausibleAngles(StateAngles(), rows_))
       measurement.remarks.push_back(std::move(remark));
@@ -168,7 +169,7 @@ class CsvReader {
       if (number < header_.first_data_line || line.empty()) continue;
       const bool may_be_special = line[0] <= '/';  // blank, tab, '#', '%' or "//"
       if (may_be_special && (Trim(line).empty() || IsComment(line))) {
-        if (line[0] != '-' && IsComment(line)) ReadKeyAmidRows(number, CommentText(line), {});
+        if (line[0] != '-' && IsComment(line)) TakeComment(number, CommentText(line));
         continue;
       }
       if (builder->measurement().samples.origin.capacity() == 0) Reserve(line.size(), builder);
@@ -228,6 +229,12 @@ class CsvReader {
       if (!same) return false;
     }
     return true;
+  }
+
+  void TakeComment(std::size_t number, std::string_view text) {
+    constexpr std::size_t kMostComments = 10000;
+    if (!ReadKeyAmidRows(number, text, {}) && !text.empty() && header_.comments.size() < kMostComments)
+      header_.comments.emplace_back(PlainComment(text));
   }
 
   bool ReadKeyAmidRows(std::size_t number, std::string_view comment, const std::vector<std::string_view>& fields) {
