@@ -106,6 +106,7 @@ void MarkNoValues(const std::string& list, Measurement* measurement) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     for (const std::vector<double>& values : samples.values) keep[i] |= std::isnan(values[i]) ? 0 : 1;
     holes -= keep[i];
+    if (keep[i] == 0) measurement->LeaveOut(samples.wi(i), samples.wo(i), LeftOutReason::kNoValue);
   }
   measurement->set_aside.Add(SetAsideReason::kHole, holes);
   samples.Keep(keep);

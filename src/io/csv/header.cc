@@ -45,7 +45,7 @@ class HeaderReader {
     ReadTitleKeys();
     if (!named) FailWithoutNames();
     // Names may stand in a comment.
-    std::erase(header_.comments, std::string(CommentText(header_.names)));
+    if (IsComment(header_.names)) std::erase(header_.comments, std::string(CommentText(header_.names)));
     mapping_.Fix(file_, header_.names_line, header_.columns, &header_.keys);
     if (mapping_.head()) header_.head_coordinate = mapping_.head();
     TakeUnits();

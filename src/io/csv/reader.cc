@@ -76,6 +76,7 @@ class CsvReader {
                                  std::to_string(gathered.channels.size()) + " channel" +
                                  (gathered.channels.size() == 1 ? "" : "s"));
       }
+      gathered.left_out = std::move(builder.measurement().left_out);
       builder.measurement() = std::move(gathered);
     }
     return Finish(&builder);
@@ -324,6 +325,7 @@ class CsvReader {
     }
     if (!any && !row.marks().empty()) {
       builder->Skip(SetAsideReason::kHole);
+      builder->measurement().LeaveOut(Normalized(wi), Normalized(wo), LeftOutReason::kNoValue);
       return;
     }
     double weight = 1;
