@@ -134,7 +134,8 @@ TEST(PbrtParameters, WhatChangesThemFromOutside) {
   EXPECT_THAT(Import("Include \"metals.pbrt\"\n" + grey).remarks,
               testing::Contains("the file 'metals.pbrt' of line 1 was not looked into"));
   EXPECT_THAT(ErrorOf(grey + grey), HasSubstr("line 2: the material 'm' is defined twice"));
-  EXPECT_THAT(ErrorOf(lobe + "[1.5 .5 .5]"), HasSubstr("reflectance holds 1.5; 0 to 1"));
+  EXPECT_THAT(ErrorOf(lobe + "[-.5 .5 .5]"), HasSubstr("reflectance holds -0.5"));
+  EXPECT_THAT(Import(lobe + "[1.5 .5 .5]").remarks, testing::Contains(HasSubstr("of line 1 is above 1")));
   EXPECT_THAT(ErrorOf(grey + "\"float vroughness\" [.2 .3]"), HasSubstr("'vroughness' has 2 values"));
   EXPECT_THAT(ErrorOf(grey + "Material \"mix\" \"string materials\" [\"m\" \"m\"] \"float amount\" 1.5"),
               HasSubstr("the amount is 1.5"));

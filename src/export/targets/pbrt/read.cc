@@ -66,6 +66,13 @@ class PbrtReader {
     if (rotation_ != 0)
       result.remarks.emplace_back("the texture coordinates of the mesh are turned as the file's comment says");
     for (const auto& [name, entry] : entries_) {
+      const auto reflectance = entry.parameters.find("reflectance");
+      if (reflectance != entry.parameters.end() && reflectance->second.type == "rgb" &&
+          std::any_of(reflectance->second.words.begin(), reflectance->second.words.end(),
+                      [](const std::string& word) { return ParseDouble(word).value_or(0) > 1; })) {
+        result.remarks.push_back(
+            fmt::format("the reflectance of line {} is above 1: more leaves than arrives", reflectance->second.line));
+      }
       if (used_.count(name) == 0) {
         result.remarks.push_back(fmt::format("the material '{}' of line {} is left out: the last one, '{}', is taken",
                                              Excerpt(name), entry.line, Excerpt(last_)));
@@ -223,10 +230,8 @@ class PbrtReader {
     }
     if (value.words.size() != 3) Fail(value.line, fmt::format("{} is not three numbers", name));
     for (const std::string& word : value.words) color.push_back(Number(value, word, name));
-    const bool fraction = std::string_view(name) == "reflectance";
     for (const double part : color) {
-      if (part >= 0 && (!fraction || part <= 1)) continue;
-      Fail(value.line, fmt::format("{} holds {}; {} is allowed", name, part, fraction ? "0 to 1" : "0 and more"));
+      if (!(part >= 0)) Fail(value.line, fmt::format("{} holds {}; 0 and more is allowed", name, part));
     }
     return color;
   }
