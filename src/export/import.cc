@@ -23,6 +23,8 @@ ImportedMaterial ImportMaterial(const std::filesystem::path& path) {
     }
     return target.read({path, file.bytes()});
   }
+  if (file.bytes().starts_with("glTF"))
+    throw InputError(path.string() + ": is glTF in its binary form; save it as .gltf, which is text");
   throw InputError(path.string() +
                    ": no material that can be read; allowed are materials of pbrt-v4 (.pbrt), Mitsuba 3 (.xml), "
                    "MaterialX (.mtlx) and glTF (.gltf), RGL tables (.bsdf), MERL tables (.binary) and material "

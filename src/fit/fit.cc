@@ -13,6 +13,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/inference/energy_balance.h"
+#include "lobefit/fit/inference/file_clusters.h"
 #include "lobefit/fit/inference/misfit.h"
 #include "lobefit/fit/inference/noise_bias.h"
 #include "lobefit/fit/inference/rivals.h"
@@ -135,6 +136,37 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
         material->covariance_clustered.push_back(clustered(free_rows[a], free_rows[b]) * factors[a] * factors[b]);
     }
   }
+}
+
+// Errors by file, and a remark where they are larger than those by incidence.
+void ReportByFile(const FileErrors& errors, Material* material) {
+  if (errors.variance.empty()) return;
+  constexpr double kMuchLarger = 1.25;
+  const std::vector<Parameter> parameters = Parameters(material->model);
+  std::size_t row = 0;
+  double largest = 0, freedom = 0;
+  std::string of;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    FittedParameter& fitted = material->parameters[i];
+    for (std::size_t c = 0; c < fitted.values.size(); ++c, ++row) {
+      const bool has_error =
+          fitted.free && !std::isnan(fitted.standard_error[std::min(c, fitted.standard_error.size() - 1)]);
+      const double error = has_error ? SquareRoot(errors.variance[row]) : kNan;
+      const double ratio =
+          error / fitted.standard_error_clustered[std::min(c, fitted.standard_error_clustered.size() - 1)];
+      fitted.standard_error_by_file.push_back(error);
+      fitted.freedom_by_file.push_back(std::isnan(error) ? kNan : errors.freedom[row]);
+      if (!(ratio > largest) || std::isinf(ratio)) continue;
+      largest = ratio;
+      of = parameters[i].json_name;
+      freedom = errors.freedom[row];
+    }
+  }
+  if (largest <= kMuchLarger) return;
+  material->remarks.push_back(
+      fmt::format("taking the samples of one file as dependent too makes standard errors up to {:.2g} times as large "
+                  "(of {}, with {:.2g} degrees of freedom): stderr_by_file of the document",
+                  largest, of, freedom));
 }
 
 // Coefficients of which the prior knows more than the samples: their posterior variance is more than half its own.
@@ -362,6 +394,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   FlagUndeterminedProfiles(problem, layout, best.u, &pool, &material);
   const bool has_rival = FlagRivals(problem, layout, samples, minima, &pool, &material);
   material.remarks = remarks;
+  ReportByFile(EstimateErrorsByFile(problem, layout, best.u, incidences, measurement->samples.file, &pool), &material);
   material.misfit = TestMisfit(problem, layout, best.u, samples, incidences);
   if (material.misfit->flagged) material.remarks.push_back(ToRemark(*material.misfit));
   ReportInstrument(problem, layout, best.u, uncertainty, incidences, found->last, &pool, &material);

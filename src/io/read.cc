@@ -11,6 +11,7 @@
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/no_value.h"
+#include "lobefit/io/csv/reader.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/text/decoded_file.h"
 #include "lobefit/io/wrong_kind.h"
@@ -105,6 +106,7 @@ void MarkNoValues(const std::string& list, Measurement* measurement) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     for (const std::vector<double>& values : samples.values) keep[i] |= std::isnan(values[i]) ? 0 : 1;
     holes -= keep[i];
+    if (keep[i] == 0) measurement->LeaveOut(samples.wi(i), samples.wo(i), LeftOutReason::kNoValue);
   }
   measurement->set_aside.Add(SetAsideReason::kHole, holes);
   samples.Keep(keep);
@@ -151,6 +153,20 @@ const Format& RecogniseFormat(const InputFile& file) {
   throw InputError(file.path.string() + ": is not in a format that can be read; it begins with '" +
                    Excerpt(file.bytes.substr(0, file.bytes.find('\n')), 24) + "' and has " +
                    std::to_string(file.bytes.size()) + " bytes. Known formats: " + KnownFormats());
+}
+
+bool HoldsMeasurement(const std::filesystem::path& path, bool any_rows) {
+  try {
+    const DecodedFile file(path);
+    try {
+      const InputFile input = {path, file.bytes()};
+      return RecogniseFormat(input).name != std::string_view("csv") || any_rows || NamesDirections(input);
+    } catch (const InputError&) {
+      return false;
+    }
+  } catch (const InputError&) {
+    return true;
+  }
 }
 
 ReadOptions WithKeys(ReadOptions options, const std::vector<std::string>& keys) {

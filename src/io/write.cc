@@ -1,5 +1,6 @@
 #include "lobefit/io/write.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -141,7 +142,10 @@ BrdfFunction FunctionOfAllAzimuths(const WriteSource& source, const std::string&
 Paths WriteRglFormat(const WriteSource& source, const WriteOptions& options, const Path& path) {
   RglWriteOptions rgl = options.rgl;
   rgl.isotropic = source.isotropic;
-  if (source.measurement != nullptr) rgl.description = "lobefit, from " + source.measurement->source;
+  if (source.measurement != nullptr) {
+    rgl.description = "lobefit, from " + source.measurement->source;
+    for (const std::string& comment : source.measurement->comments) rgl.description += "\n" + comment;
+  }
   WriteRgl(FunctionOfAllAzimuths(source, "an RGL table"), source.channels, rgl, path);
   return {path};
 }
@@ -168,6 +172,31 @@ std::string Percent(double fraction) {
   return text;
 }
 
+// What is known of the samples beside their values.
+void AddWordsOfSamples(const Measurement& measurement, const std::string& format, Conversion* conversion) {
+  const Samples& samples = measurement.samples;
+  std::vector<std::string>& losses = conversion->losses;
+  const bool csv = format == "csv", rows = csv || format == "alta";
+  if (!samples.weight.empty() && (!rows || (!csv && !samples.sigma.empty())))
+    losses.emplace_back("the weights of the samples are not written");
+  if (!samples.sigma.empty() && (!rows || (csv && !samples.weight.empty())))
+    losses.emplace_back("the standard deviations of the samples are not written");
+  const bool comments = rows || format == "mountain" || format == "rgl";
+  if (!measurement.comments.empty() && !comments)
+    losses.push_back(std::to_string(measurement.comments.size()) + " comment lines of the file are not written");
+  if (measurement.instrument != StatedInstrument{} && !csv)
+    losses.emplace_back("what the file states of the instrument is not written");
+  if (measurement.isotropic && (rows || format == "mountain"))
+    losses.emplace_back("that the sample is isotropic is not written: the rows have one azimuth of the light");
+  if (std::any_of(samples.sample_azimuth.begin(), samples.sample_azimuth.end(), [](double a) { return a != 0; }))
+    losses.emplace_back("by how much the sample was turned is not written: directions are those of its frame");
+  const std::string mark = "columns not used: ";
+  for (const std::string& remark : measurement.remarks) {
+    const std::size_t at = remark.find(mark);
+    if (at != std::string::npos) losses.push_back("columns are not written: " + remark.substr(at + mark.size()));
+  }
+}
+
 // What the target leaves out by its nature.
 void AddWords(const WriteSource& source, const WriteFormat& format, const WriteOptions& options,
               Conversion* conversion) {
@@ -176,9 +205,7 @@ void AddWords(const WriteSource& source, const WriteFormat& format, const WriteO
     conversion->losses.push_back(source.brdf ? "resampled to the grid of the format"
                                              : "samples interpolated to the grid of the format");
   }
-  if (source.measurement != nullptr && !source.measurement->samples.weight.empty() && name != "csv") {
-    conversion->losses.emplace_back("the weights of the samples are not written");
-  }
+  if (source.measurement != nullptr) AddWordsOfSamples(*source.measurement, name, conversion);
   if (source.measurement != nullptr && source.measurement->set_aside.total() > 0) {
     conversion->losses.push_back(std::to_string(source.measurement->set_aside.total()) +
                                  " samples that were set aside in reading are not written");

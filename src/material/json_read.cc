@@ -182,6 +182,10 @@ void ReadParameters(const Reader& reader, Material* material) {
     fitted.standard_error = reader.GetNumbers(entry, "stderr", factor);
     fitted.standard_error_clustered = reader.GetNumbers(entry, "stderr_clustered", factor);
     if (entry.contains("clustered_freedom")) fitted.freedom = reader.GetNumbers(entry, "clustered_freedom", 1);
+    if (entry.contains("stderr_by_file")) {
+      fitted.standard_error_by_file = reader.GetNumbers(entry, "stderr_by_file", factor);
+      fitted.freedom_by_file = reader.GetNumbers(entry, "by_file_freedom", 1);
+    }
     fitted.free = reader.Get<bool>(entry, "free");
     fitted.at_bound = reader.Get<bool>(entry, "at_bound");
     const std::size_t expected = parameter.per_channel ? material->channels.size() : 1;

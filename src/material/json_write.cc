@@ -55,6 +55,10 @@ Json ParametersToJson(const Material& material) {
         {"unit", parameter.unit},
         {"free", fitted.free},
         {"at_bound", fitted.at_bound}};
+    if (fitted.standard_error_by_file.empty()) continue;
+    Json& entry = object[parameter.json_name];
+    entry["stderr_by_file"] = Numbers(fitted.standard_error_by_file, parameter.per_channel, factor);
+    entry["by_file_freedom"] = Numbers(fitted.freedom_by_file, parameter.per_channel, 1);
   }
   return object;
 }

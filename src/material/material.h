@@ -26,6 +26,9 @@ struct FittedParameter {
   std::vector<double> freedom;
   bool free = true;
   bool at_bound = false;
+  // Standard error where the samples of one file of a series are taken as dependent too, and its degrees of freedom
+  // (fit/inference/file_clusters.h). Empty where there are no files that say more than incidences.
+  std::vector<double> standard_error_by_file = {}, freedom_by_file = {};
 };
 
 // Error of the model under one metric: root mean square over all samples and channels, with the weights of the fit.

@@ -14,9 +14,7 @@ namespace {
 
 using Zone = Exclusion::Zone;
 
-enum class Reason { kNearMirror, kNearLight, kByValue, kByAngle };
-constexpr std::array<const char*, 4> kReasons = {"near the mirror direction", "near the light's own direction",
-                                                 "by their value", "by an angle"};
+using Reason = LeftOutReason;
 
 [[noreturn]] void Refuse(const std::string& text, std::string_view item) {
   throw UsageError("--exclude " + Excerpt(text, 100) + ": '" + Excerpt(item) +
@@ -126,13 +124,15 @@ void Apply(const std::vector<Exclusion>& exclusions, Measurement* measurement) {
   Samples& samples = measurement->samples;
   std::vector<std::uint8_t> keep(samples.size(), 1);
   std::size_t kept = samples.size();
-  std::array<std::size_t, kReasons.size()> counts = {};
+  std::array<std::size_t, kLeftOutWords.size()> counts = {};
+  std::vector<LeftOut> left_out;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::optional<Reason> reason = ReasonFor(exclusions, samples, i);
     if (!reason) continue;
     keep[i] = 0;
     --kept;
     ++counts[static_cast<std::size_t>(*reason)];
+    if (left_out.size() < kMostLeftOut) left_out.push_back({samples.wi(i), samples.wo(i), *reason});
   }
   if (kept == 0) {
     throw InputError(measurement->source + ": all of its " + std::to_string(samples.size()) +
@@ -141,9 +141,10 @@ void Apply(const std::vector<Exclusion>& exclusions, Measurement* measurement) {
   if (kept == samples.size()) return;
   measurement->set_aside.Add(SetAsideReason::kOutsideSelection, samples.size() - kept);
   samples.Keep(keep);
+  for (const LeftOut& one : left_out) measurement->LeaveOut(one.wi, one.wo, one.reason);
   std::vector<std::string> words;
-  for (std::size_t r = 0; r < kReasons.size(); ++r) {
-    if (counts[r] > 0) words.push_back(std::to_string(counts[r]) + " " + kReasons[r]);
+  for (std::size_t r = 0; r < counts.size(); ++r) {
+    if (counts[r] > 0) words.push_back(std::to_string(counts[r]) + " " + kLeftOutWords[r]);
   }
   measurement->remarks.push_back("samples excluded: " + Join(words));
 }

@@ -13,6 +13,7 @@ void DropIncomplete(Measurement* measurement) {
       if (std::isfinite(values[i]) || keep[i] == 0) continue;
       keep[i] = 0;
       ++dropped;
+      measurement->LeaveOut(samples.wi(i), samples.wo(i), LeftOutReason::kNoValue);
     }
   }
   if (dropped == 0) return;

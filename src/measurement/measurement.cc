@@ -19,6 +19,7 @@ void ForEachArray(Samples& samples, Function&& function) {
   if (!samples.sigma.empty()) function(samples.sigma);
   if (!samples.solid_angle.empty()) function(samples.solid_angle);
   if (!samples.sample_azimuth.empty()) function(samples.sample_azimuth);
+  if (!samples.file.empty()) function(samples.file);
   function(samples.origin);
 }
 
@@ -59,6 +60,7 @@ Samples Samples::Subset(const std::vector<std::size_t>& indices) const {
   pick(sigma, subset.sigma);
   pick(solid_angle, subset.solid_angle);
   pick(sample_azimuth, subset.sample_azimuth);
+  pick(file, subset.file);
   pick(origin, subset.origin);
   return subset;
 }

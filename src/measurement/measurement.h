@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lobefit/math/vec.h"
+#include "lobefit/measurement/left_out.h"
 #include "lobefit/measurement/set_aside.h"
 
 namespace lobefit {
@@ -41,6 +42,9 @@ struct Samples {
   // By how much the sample was turned about its normal on the stage, radians, where the file turned it as a whole;
   // directions are those of its frame. Empty: by nothing.
   std::vector<double> sample_azimuth;
+  // Which of the files that were pooled it is from, from 0; a mean of repeats from several is of the first. Empty: one
+  // file, or a file a channel.
+  std::vector<std::uint32_t> file;
   // Where the sample stands in its file: line of a text file (from 1), index of the cell in a table (from 0).
   std::vector<std::uint32_t> origin;
 
@@ -69,9 +73,15 @@ struct StatedInstrument {
 };
 
 struct Measurement {
+  void LeaveOut(const Vec3& wi, const Vec3& wo, LeftOutReason reason) {
+    if (left_out.size() < kMostLeftOut) left_out.push_back({wi, wo, reason});
+  }
+
   Channels channels;
   Samples samples;
   SetAside set_aside;
+  // Of those, where they were that zones and marks of a user leave out: at most kMostLeftOut of 56 bytes each.
+  std::vector<LeftOut> left_out;
   // True where the file cannot express a dependence on azimuth (MERL, isotropic tables): the fit then takes an
   // isotropic model.
   bool isotropic = false;
@@ -87,6 +97,9 @@ struct Measurement {
   // (default)"}.
   std::map<std::string, std::string> conventions;
   StatedInstrument instrument;
+  // Comment lines and titles of the file that state nothing which was understood, as written, without their marks: for
+  // who writes the measurement anew.
+  std::vector<std::string> comments;
   // Remarks for people: rectified noise recognised, columns ignored.
   std::vector<std::string> remarks;
 };

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "lobefit/base/text.h"
+#include "lobefit/math/statistics.h"
 #include "lobefit/measurement/incidence.h"
 
 namespace lobefit {
@@ -46,7 +47,9 @@ class Checks {
     Gather();
     CheckLight();
     CheckLevel();
+    if (samples_.solid_angle.empty()) CheckPeaks();
     if (samples_.solid_angle.empty()) CheckMarks();
+    if (!samples_.sigma.empty()) CheckSigma();
     return std::move(remarks_);
   }
 
@@ -59,6 +62,7 @@ class Checks {
     std::array<double, kRings* kSectors> sum = {};
     std::array<std::size_t, kRings* kSectors> count = {};
     double largest = -kInfinity, near_mirror = -kInfinity, near_light = -kInfinity;
+    Vec3 brightest = {0, 0, 1};  // the viewer of the largest value
     bool has_mirror = false, has_light = false, out_of_plane = false;
     double least_theta_o = kInfinity, largest_theta_o = -kInfinity;
   };
@@ -84,6 +88,7 @@ class Checks {
       const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
       incidence.sum[cell] += value;
       ++incidence.count[cell];
+      if (value > incidence.largest) incidence.brightest = wo;
       incidence.largest = std::max(incidence.largest, value);
       if (wo.z * wi.z - wo.x * wi.x - wo.y * wi.y > near) {
         incidence.has_mirror = true;
@@ -115,6 +120,36 @@ class Checks {
                        " the largest values lie about the light's own direction and none about the mirror's; if "
                        "azimuths or signed angles count from the specular side, use "
                        "--incident propagation (a retro-reflector looks like this too)");
+  }
+
+  // Lobes about the normal at every incidence are those of angles that count from the mirror direction; at the complement
+  // of the mirror's polar angle, of angles that count from the surface. At grazing incidence lobes lie off the mirror
+  // direction by themselves.
+  void CheckPeaks() {
+    std::size_t asked = 0, normal = 0, apart = 0, complement = 0;
+    const double near = std::cos(8 * kPi / 180), degree = kPi / 180;
+    for (const Incidence& incidence : incidences_) {
+      const Vec3& wi = incidence.wi;
+      const double theta = std::acos(std::min(1.0, wi.z));
+      if (theta < 24 * degree || theta > 60 * degree) continue;
+      if (!incidence.has_mirror || incidence.least_theta_o > -8 * degree) continue;
+      const bool peak = incidence.largest > 1.25 * std::max(incidence.near_mirror, 0.0);
+      ++asked;
+      normal += peak && incidence.brightest.z > near ? 1 : 0;
+      if (std::fabs(theta - kPi / 4) < 12 * degree) continue;  // its complement is near the mirror direction
+      const double tangent = std::hypot(wi.x, wi.y), scale = wi.z / tangent;
+      ++apart;
+      complement += peak && Dot(incidence.brightest, {-wi.x * scale, -wi.y * scale, tangent}) > near ? 1 : 0;
+    }
+    if (asked > 0 && 3 * normal >= 2 * asked) {
+      remarks_.push_back("in " + std::to_string(normal) + " of " + Count(asked, "incident direction") +
+                         " the largest values lie about the normal and not the mirror direction: do the angles count "
+                         "from that? --columns delta_theta=NAME");
+    } else if (apart > 0 && 3 * complement >= 2 * apart) {
+      remarks_.push_back("in " + std::to_string(complement) + " of " + Count(apart, "incident direction") +
+                         " the largest values lie where the mirror direction would be, were one of the polar angles "
+                         "counted from the surface: --columns elevation_o=NAME, or elevation_i=NAME");
+    }
   }
 
   // Directional albedo from the means over rings; nothing where the samples do not cover the hemisphere.
@@ -238,6 +273,21 @@ class Checks {
                          ": if the detector saturates there, use --exclude \"value>=" + Short(largest * (1 - 1e-3)) +
                          "\"");
     }
+  }
+
+  // Ratios of stated standard deviations to the values: their median above 1 is hardly an instrument's.
+  void CheckSigma() {
+    std::vector<double> ratios;
+    for (const std::size_t i : chosen_) {
+      const double value = std::fabs(MeanOfChannels(samples_, i));
+      if (value > 0) ratios.push_back(samples_.sigma[i] / value);
+    }
+    if (ratios.empty()) return;
+    const double median = Median(std::move(ratios));
+    if (median <= 1) return;
+    remarks_.push_back("half of the stated uncertainties are above " + Short(100 * median) +
+                       " % of the value: are they in another unit, such as percent? Write it into their name, as in "
+                       "'uncertainty [%]'");
   }
 
   const Samples& samples_;

@@ -13,8 +13,11 @@ namespace lobefit {
 
 // One remark for each of these that holds, with the option that cures it:
 // - light: in most incident directions the largest values lie about the light's own direction instead of the mirror's;
+// - peaks: in most incident directions the largest values lie about the normal, or where the mirror direction would be
+//   if one of the angles counted from the surface;
 // - level: more light would leave than arrives, by a third at least, where the samples tell; negative throughout; the
 //   largest value exactly 1 or 100;
+// - uncertainties: half of those stated are above their values;
 // - marks: values that are exactly 0, -1, -999 and their like, or many that share the largest one.
 // Tables with cells (samples.solid_angle) are made by programs and are checked for the light and the level only.
 std::vector<std::string> FindImplausible(const Measurement& measurement);

@@ -12,13 +12,6 @@
 namespace lobefit {
 namespace {
 
-bool IsUnpolarised(const std::string& name) {
-  static constexpr std::array<std::string_view, 14> kNames = {"u",    "unpol",  "unpol.",  "unpolarized", "unpolarised",
-                                                              "none", "random", "avg",     "average",     "mean",
-                                                              "n",    "no",     "natural", "np"};
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
-}
-
 void KeepOne(const std::vector<std::uint8_t>& polarisation, std::size_t chosen, Measurement* measurement) {
   std::vector<std::uint8_t> keep(polarisation.size());
   std::size_t others = 0;
@@ -47,6 +40,13 @@ bool AreOfBothSides(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+bool IsUnpolarised(std::string_view name) {
+  static constexpr std::array<std::string_view, 14> kNames = {"u",    "unpol",  "unpol.",  "unpolarized", "unpolarised",
+                                                              "none", "random", "avg",     "average",     "mean",
+                                                              "n",    "no",     "natural", "np"};
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
 
 std::string AverageOverPolarisation(const std::vector<std::uint8_t>& polarisation,
                                     const std::vector<std::string>& names, Measurement* measurement) {

@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lobefit/measurement/measurement.h"
 
 namespace lobefit {
+
+// A name, in small letters, that stands for unpolarised light or the mean over polarisations.
+bool IsUnpolarised(std::string_view name);
 
 // The samples of each pair of directions become their mean over the polarisations, since unpolarised light is half of
 // each of two that are orthogonal; repeated samples of one polarisation are averaged first. A pair that lacks a

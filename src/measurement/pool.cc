@@ -64,6 +64,7 @@ void AppendSamples(Samples&& from, Samples* to) {
   if (!to->weight.empty() && from.weight.empty()) from.weight.assign(from.size(), 1.0);
   if (to->sample_azimuth.empty() && !from.sample_azimuth.empty()) to->sample_azimuth.assign(to->size(), 0.0);
   if (!to->sample_azimuth.empty() && from.sample_azimuth.empty()) from.sample_azimuth.assign(from.size(), 0.0);
+  MoveBehind(&to->file, std::move(from.file));
   MoveBehind(&to->sample_azimuth, std::move(from.sample_azimuth));
   MoveBehind(&to->wi_x, std::move(from.wi_x));
   MoveBehind(&to->wi_y, std::move(from.wi_y));
@@ -130,6 +131,16 @@ void MergeWords(const std::vector<Measurement>& parts, Measurement* pooled) {
         all = "as each file states";
       }
     }
+    for (const std::string& comment : part.comments) {
+      const bool of_all = std::all_of(parts.begin(), parts.end(), [&](const Measurement& other) {
+        return std::find(other.comments.begin(), other.comments.end(), comment) != other.comments.end();
+      });
+      if (!of_all) {
+        pooled->comments.push_back(part.source + ": " + comment);
+      } else if (&part == parts.data()) {
+        pooled->comments.push_back(comment);
+      }
+    }
     for (const std::string& remark : part.remarks) {
       const std::string own = part.source + ": " + remark;
       const bool known = std::any_of(parts.begin(), parts.end(), [&](const Measurement& other) {
@@ -151,6 +162,7 @@ Measurement Pool(std::vector<Measurement> parts, bool merge_repeated) {
     RequireSameKind(parts[0], parts[p]);
     same = same && SameChannels(parts[0].channels, parts[p].channels);
     digests += parts[p].sha256;
+    for (const LeftOut& one : parts[p].left_out) pooled.LeaveOut(one.wi, one.wo, one.reason);
     for (int r = 0; r < kSetAsideReasons; ++r) {
       const auto reason = static_cast<SetAsideReason>(r);
       pooled.set_aside.Add(reason, parts[p].set_aside[reason]);
@@ -199,6 +211,8 @@ Measurement Pool(std::vector<Measurement> parts, bool merge_repeated) {
     return pooled;
   }
 
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    parts[p].samples.file.assign(parts[p].samples.size(), static_cast<std::uint32_t>(p));
   pooled.channels = parts[0].channels;
   pooled.samples = std::move(parts[0].samples);
   for (std::size_t p = 1; p < parts.size(); ++p) AppendSamples(std::move(parts[p].samples), &pooled.samples);

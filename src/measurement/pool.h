@@ -11,7 +11,8 @@ namespace lobefit {
 // and is merged to its mean with `merge_repeated`, else its first sample stays and the others are counted. Parts with
 // one wavelength each, all different, become channels of the pairs of directions that they share (those that lack one
 // are NaN there, see DropIncomplete). Weights of parts that state none count as the mean of the others, their
-// standard deviations as the median. The digest is
+// standard deviations as the median. Each sample keeps
+// its part's number (Samples::file), but where parts are channels. The digest is
 // that of the parts' digests, one after the other. Conventions that differ are said to be each file's own.
 //
 // Throws InputError that names two files where they do not go together: channels, tables with cells beside lists of

@@ -120,6 +120,49 @@ TEST(MaterialXInputs, CountOrAreErrors) {
               HasSubstr("too large"));
 }
 
+// A colour of another space, and a value that is not the one used.
+TEST(MaterialXInputs, ColoursAreLinearAndConstant) {
+  const std::string linear = "<input name=\"ior\" type=\"color3\" value=\"0.2, 0.2, 0.2\" colorspace=\"lin_rec709\"/>";
+  EXPECT_EQ(ErrorOf(Conductor(linear)), "no error");
+  const std::string other = "<input name=\"ior\" type=\"color3\" value=\"0.2, 0.2, 0.2\" colorspace=\"srgb_texture\"/>";
+  EXPECT_THAT(ErrorOf(Conductor(other)), HasSubstr("'ior' is a colour in the space 'srgb_texture'"));
+  std::string document = Conductor(Input("ior", "color3", "0.2, 0.2, 0.2"));
+  document.replace(0, 11, "<materialx colorspace=\"srgb_texture\" ");
+  EXPECT_THAT(ErrorOf(document), HasSubstr("'ior' is a colour in the space 'srgb_texture'"));
+  for (const char* more :
+       {"nodename=\"tex\"", "nodegraph=\"g\" output=\"o\"", "interfacename=\"i\"", "unit=\"inch\""}) {
+    EXPECT_THAT(ErrorOf(Conductor("<input name=\"weight\" type=\"float\" value=\"1\" " + std::string(more) + "/>")),
+                HasSubstr("'weight' has a value and the attribute"))
+        << more;
+  }
+  EXPECT_THAT(ErrorOf(Conductor(Input("weight", "float", "1") + Input("weight", "float", "0.5"))),
+              HasSubstr("given twice"));
+  EXPECT_THAT(ErrorOf(Conductor("<parameter name=\"weight\" type=\"float\" value=\"0.5\"/>")),
+              HasSubstr("<parameter> within <conductor_bsdf>"));
+  std::string defined = Conductor("");
+  defined.replace(defined.find("type=\"BSDF\""), 11, "type=\"BSDF\" nodedef=\"ND_mine\"");
+  EXPECT_THAT(ErrorOf(defined), HasSubstr("'ND_mine'"));
+}
+
+TEST(PbrtParameters, WhatChangesThemFromOutside) {
+  const std::string lobe =
+      "MakeNamedMaterial \"m\" \"string type\" \"conductor\" \"float roughness\" .4 \"rgb reflectance\" ";
+  const std::string grey = lobe + "[.5 .5 .5]\n";
+  EXPECT_EQ(ErrorOf("ColorSpace \"srgb\"\n" + grey), "no error");
+  EXPECT_THAT(ErrorOf("ColorSpace \"aces2065-1\"\n" + grey), HasSubstr("the colour space is 'aces2065-1'"));
+  EXPECT_THAT(ErrorOf("Attribute \"material\" \"bool remaproughness\" false\n" + grey),
+              HasSubstr("line 1: an Attribute for materials"));
+  EXPECT_EQ(ErrorOf("Attribute \"shape\" \"float radius\" 2\n" + grey), "no error");
+  EXPECT_THAT(Import("Include \"metals.pbrt\"\n" + grey).remarks,
+              testing::Contains("the file 'metals.pbrt' of line 1 was not looked into"));
+  EXPECT_THAT(ErrorOf(grey + grey), HasSubstr("line 2: the material 'm' is defined twice"));
+  EXPECT_THAT(ErrorOf(lobe + "[-.5 .5 .5]"), HasSubstr("reflectance holds -0.5"));
+  EXPECT_THAT(Import(lobe + "[1.5 .5 .5]").remarks, testing::Contains(HasSubstr("of line 1 is above 1")));
+  EXPECT_THAT(ErrorOf(grey + "\"float vroughness\" [.2 .3]"), HasSubstr("'vroughness' has 2 values"));
+  EXPECT_THAT(ErrorOf(grey + "Material \"mix\" \"string materials\" [\"m\" \"m\"] \"float amount\" 1.5"),
+              HasSubstr("the amount is 1.5"));
+}
+
 TEST(PbrtParameters, CountOrAreErrors) {
   const std::string lobe = "MakeNamedMaterial \"m\" \"string type\" \"conductor\" \"rgb reflectance\" [.5 .5 .5]\n";
   EXPECT_THAT(ErrorOf(lobe + "\"float uroughnes\" .2"), HasSubstr("did you mean 'uroughness'?"));
@@ -151,6 +194,33 @@ TEST(MitsubaProperties, CountOrAreErrors) {
   EXPECT_THAT(ErrorOf(MitsubaScene("3.0.0", "<float name=\"int_ior\" value=\"1.3\"/>")), HasSubstr("int_ior"));
   const ImportedMaterial two = Import(MitsubaScene("3.0.0", names, "<bsdf type=\"diffuse\" id=\"first\"/>"));
   EXPECT_THAT(two.remarks, testing::Contains(HasSubstr("'first' of line 1 is left out: the last one, 'last'")));
+}
+
+TEST(MitsubaProperties, AreConstantsOfTheirType) {
+  const auto error = [](const std::string& property) { return ErrorOf(MitsubaScene("0.6.0", property)); };
+  EXPECT_THAT(error("<srgb name=\"k\" value=\"0.5, 0.5, 0.5\"/>"), HasSubstr("'k' is given by <srgb>"));
+  EXPECT_THAT(error("<string name=\"alpha\" value=\"0.5\"/>"), HasSubstr("'alpha' is given by <string>"));
+  EXPECT_THAT(error("<spectrum name=\"k\" value=\"1.5\" scale=\"2\"/>"), HasSubstr("scale='2' of 'k'"));
+  EXPECT_THAT(error("<float name=\"alpha\" value=\"-0.5\"/>"), HasSubstr("not above 0"));
+  EXPECT_THAT(ErrorOf("<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"2\"/><bsdf type=\"diffuse\"/><bsdf "
+                      "type=\"diffuse\"/></bsdf>"),
+              HasSubstr("its weight is 2"));
+  const ImportedMaterial shape =
+      Import(MitsubaScene("3.0.0", "", "<shape type=\"sphere\"><bsdf type=\"diffuse\"/></shape>"));
+  EXPECT_THAT(shape.remarks, testing::Contains(HasSubstr("within the shape of line 1 is left out")));
+}
+
+TEST(GltfMembers, WhatConcernsTheWholeFile) {
+  const auto gltf = [](const std::string& version, const std::string& more, const std::string& factor) {
+    return "{\"asset\": {\"version\": \"" + version + "\"}" + more +
+           ", \"materials\": [{\"pbrMetallicRoughness\": {\"roughnessFactor\": " + factor + "}}]}";
+  };
+  EXPECT_EQ(ErrorOf(gltf("2.0", "", "0.5")), "no error");
+  EXPECT_THAT(ErrorOf(gltf("1.0", "", "0.5")), HasSubstr("of the version 1.0"));
+  EXPECT_THAT(ErrorOf(gltf("2.0", ", \"extensionsRequired\": [\"KHR_materials_volume\"]", "0.5")),
+              HasSubstr("requires the extension 'KHR_materials_volume'"));
+  EXPECT_THAT(ErrorOf(gltf("2.0", "", "-0.5")), HasSubstr("'roughnessFactor' is -0.5; 0 to 1"));
+  EXPECT_THAT(ErrorOf(std::string("glTF\2\0\0\0", 8)), HasSubstr("binary form"));
 }
 
 TEST(GltfMembers, CountOrAreErrors) {

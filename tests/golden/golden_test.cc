@@ -7,10 +7,13 @@
 
 #include "tests/report/synthetic.h"
 #include "tests/support/paths.h"
+#include "tests/support/temporary_file.h"
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include "lobefit/measurement/exclusion.h"
 #include "lobefit/plot/png.h"
+#include "lobefit/report/figures/coverage.h"
 #include "lobefit/report/figures/page.h"
 
 namespace lobefit {
@@ -139,6 +142,28 @@ TEST(Golden, Panels) {
   if (!regenerate) {
     EXPECT_GE(compared, 15);
   }
+}
+
+// The picture of `lobefit info --png`, with what zones and marks left out.
+TEST(Golden, Coverage) {
+  if (!Fonts().has_outlines()) GTEST_SKIP() << "DejaVu fonts are not installed: the stored picture was drawn with them";
+  Measurement measurement = test::Measure(test::MakeMaterial(1, false), test::GoniometerPairs(true), 0.05, false);
+  measurement.source = "coverage.csv";
+  measurement.format = "csv";
+  for (std::size_t i = 5; i < measurement.samples.size(); i += 97)
+    measurement.LeaveOut(measurement.samples.wi(i), measurement.samples.wo(i), LeftOutReason::kNoValue);
+  Apply(ParseExclusions("specular:10,retro:12,theta-o>70"), &measurement);
+  const std::filesystem::path path = test::SourceDir() / "tests" / "golden" / "coverage.png";
+  const TemporaryFile drawn;
+  const bool regenerate = std::getenv("LOBEFIT_REGENERATE_GOLDEN") != nullptr;
+  WriteCoveragePng(measurement, regenerate ? path : drawn.path(), {.threads = 1, .scale = 1, .font_folders = {}});
+  if (regenerate) return;
+  const cv::Mat expected = ReadPng(path), found = ReadPng(drawn.path());
+  ASSERT_FALSE(expected.empty()) << path << " is missing";
+  ASSERT_EQ(expected.size(), found.size());
+  const Difference difference = Compare(found, expected);
+  EXPECT_LE(difference.mean, kMean);
+  EXPECT_LE(difference.different, kMostDifferent);
 }
 
 TEST(Golden, TheComparisonSeesAShiftOfTwoPixelsAndALostLabel) {

@@ -143,5 +143,70 @@ TEST(Convert, FormatsByNameAndByExtension) {
   EXPECT_THROW(FindWriteFormat("jpeg", "x.csv"), UsageError);
 }
 
+// A file of a laboratory and what each target keeps of it beside the values.
+TEST(Convert, CarriesCommentsAndUncertaintiesOrSaysNot) {
+  const TemporaryFile file(
+      "Operator: N.N.\n# Sample: A1, polished\n# detector: 1.5\n# Polarization: s\n"
+      "theta_i,phi_i,theta_o,phi_o,R,G,B,sigma,Time\n30,0,45,180,1,2,3,0.1,12:00\n30,0,20,0,4,5,6,0.2,12:01\n"
+      "# lamp was replaced\n30,0,20,180,4,5,6,0.4,12:02\n");
+  const Measurement m = ReadMeasurement(file.path());
+  const std::vector<std::string> comments = {"Sample: A1, polished", "Polarization: s", "Operator: N.N.",
+                                             "lamp was replaced"};
+  EXPECT_EQ(m.comments, comments);
+  const WriteSource source = {&m, nullptr, m.channels, false};
+  const auto says = [](const Conversion& conversion, std::string_view part) {
+    return std::any_of(conversion.losses.begin(), conversion.losses.end(),
+                       [&](const std::string& loss) { return loss.find(part) != std::string::npos; });
+  };
+  for (const char* name : {"csv", "alta"}) {
+    const TemporaryFile written;
+    const Conversion conversion = Convert(source, FindWriteFormat(name, written.path()), {}, written.path());
+    const Measurement back = ReadMeasurement(written.path());
+    EXPECT_EQ(back.comments, comments) << name;
+    ASSERT_EQ(back.samples.sigma.size(), 3U) << name;
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(back.samples.sigma[i], m.samples.sigma[i], 1e-15) << name;
+    EXPECT_FALSE(says(conversion, "comment lines")) << name;
+    EXPECT_FALSE(says(conversion, "standard deviations")) << name;
+    EXPECT_TRUE(says(conversion, "columns are not written: Time")) << name;
+    EXPECT_EQ(says(conversion, "of the instrument"), std::string_view(name) == "alta");
+    EXPECT_NEAR(back.instrument.detector.value_or(0), std::string_view(name) == "csv" ? DegreesToRadians(1.5) : 0,
+                1e-15);
+  }
+  const TemporaryFile image;
+  const Conversion exr = Convert(source, FindWriteFormat("exr", image.path()), {}, image.path());
+  EXPECT_TRUE(says(exr, "4 comment lines of the file are not written"));
+  EXPECT_TRUE(says(exr, "the standard deviations of the samples are not written"));
+  const TemporaryFile mountain;
+  const Conversion text = Convert(source, FindWriteFormat("mountain", mountain.path()), {}, mountain.path());
+  EXPECT_TRUE(says(text, "the standard deviations of the samples are not written"));
+  EXPECT_EQ(ReadMeasurement(mountain.path()).comments.size(), comments.size() + 1) << "with the sample's name";
+}
+
+// Weights are confidence intervals of ALTA, in ratio.
+TEST(Convert, WeightsGoToAltaAndBack) {
+  const TemporaryFile file("theta_i,phi_i,theta_o,phi_o,f,weight\n30,0,45,180,1,2\n30,0,20,0,4,1\n");
+  const Measurement m = ReadMeasurement(file.path());
+  const TemporaryFile written;
+  Convert({&m, nullptr, m.channels, false}, FindWriteFormat("alta", written.path()), {}, written.path());
+  const Measurement back = ReadMeasurement(written.path());
+  ASSERT_EQ(back.samples.weight.size(), 2U);
+  EXPECT_NEAR(back.samples.weight[0] / back.samples.weight[1], 2, 1e-12);
+}
+
+// A comment of one format that is a key of another must not act in it.
+TEST(Convert, CommentsDoNotBecomeKeys) {
+  const TemporaryFile alta(
+      "#ALTA HEADER BEGIN\n# exclude: value<100\n# value-scale: %\n# made by N.N.\n#DIM 4 1\n#PARAM_IN "
+      "SPHERICAL_TL_PL_TV_PV\n#PARAM_OUT INV_STERADIAN\n#ALTA HEADER END\n0.5 0 0.7 3.1 2\n");
+  const Measurement m = ReadMeasurement(alta.path());
+  EXPECT_EQ(m.comments, (std::vector<std::string>{"exclude: value<100", "value-scale: %", "made by N.N."}));
+  const TemporaryFile csv;
+  Convert({&m, nullptr, m.channels, false}, FindWriteFormat("csv", csv.path()), {}, csv.path());
+  const Measurement back = ReadMeasurement(csv.path());
+  ASSERT_EQ(back.samples.size(), 1U);
+  EXPECT_EQ(back.samples.values[0][0], 2);
+  EXPECT_EQ(back.comments, m.comments);
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -49,6 +49,30 @@ TEST(Series, AFolderIsItsFiles) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(Series, WhatElseLiesInAFolderIsNamed) {
+  const std::filesystem::path folder = TemporaryFile().path();
+  std::filesystem::create_directories(folder / "more");
+  WriteFileAtomically(folder / "README.txt", "Measured by N.N., in May.\n");
+  try {
+    ReadSeries({folder.string()}, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("it holds 1 file that holds no measurement (README.txt); the folders in "
+                        "it are not looked into"),
+              std::string::npos)
+        << error.what();
+  }
+  WriteFileAtomically(folder / "a.csv", "theta_i,theta_s,BSDF\n10,-20,1\n");
+  const Measurement m = ReadSeries({folder.string()}, {});
+  EXPECT_EQ(m.samples.size(), 1U);
+  EXPECT_TRUE(HasRemark(m, "holds 1 file that holds no measurement (README.txt) too"));
+  // What is one but cannot be read is no such file.
+  WriteFileAtomically(folder / "b.csv", "theta_i,theta_s,BSDF\n10,-20,one\n");
+  EXPECT_THROW(ReadSeries({folder.string()}, {}), InputError);
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Series, PathsWithColonsAndEqualsSigns) {
   const TemporaryFile plain("theta_i,theta_o,f\n10,20,1\n");
   const FileSpec whole = ParseFileSpec(plain.path().string());

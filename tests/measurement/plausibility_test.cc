@@ -83,5 +83,21 @@ TEST(Plausibility, MarksAndSaturation) {
   EXPECT_TRUE(Says(Hemisphere(saturated), "share the largest value, 0.8"));
 }
 
+TEST(Plausibility, PeaksThatFollowFromAnglesOfAnotherOrigin) {
+  // The light as stated, the lobe where it would be if theta_o counted from the mirror direction or the surface.
+  const auto offset = [](const Vec3&, const Vec3& wo) { return Lobe({0, 0, 1}, wo); };
+  EXPECT_TRUE(Says(Hemisphere(offset), "the largest values lie about the normal and not the mirror direction"));
+  const auto grazing = [](const Vec3& wi, const Vec3& wo) { return Lobe({wi.z, 0, wi.x}, wo); };
+  EXPECT_TRUE(Says(Hemisphere(grazing), "--columns elevation_o=NAME"));
+}
+
+TEST(Plausibility, UncertaintiesAboveTheirValues) {
+  Measurement m = Hemisphere(Lobe);
+  for (std::size_t i = 0; i < m.samples.size(); ++i) m.samples.sigma.push_back(0.05 * m.samples.values[0][i]);
+  EXPECT_FALSE(Says(m, "stated uncertainties"));
+  for (double& sigma : m.samples.sigma) sigma *= 100;
+  EXPECT_TRUE(Says(m, "half of the stated uncertainties are above 500 % of the value"));
+}
+
 }  // namespace
 }  // namespace lobefit

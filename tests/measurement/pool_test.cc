@@ -30,6 +30,7 @@ TEST(Pool, PartsFollowEachOther) {
   ASSERT_EQ(m.samples.size(), 5U);
   EXPECT_EQ(m.samples.values[0], (std::vector<double>{1, 2, 3, 4, 5}));
   EXPECT_EQ(m.samples.origin[3], 3U);
+  EXPECT_EQ(m.samples.file, (std::vector<std::uint32_t>{0, 0, 1, 1, 1}));
   EXPECT_EQ(m.source, "a and 1 more");
   EXPECT_EQ(m.conventions.at("angle-unit"), "deg (default)");
   EXPECT_EQ(m.sha256.size(), 64U);
@@ -39,6 +40,7 @@ TEST(Pool, TheSameDirectionsAreRepeats) {
   const Measurement merged = Pool({Part("a", 10, {{"Y"}, {}}, {1, 2}), Part("b", 10, {{"Y"}, {}}, {3})}, true);
   ASSERT_EQ(merged.samples.size(), 2U);
   EXPECT_EQ(merged.samples.values[0][0], 2);
+  EXPECT_EQ(merged.samples.file, (std::vector<std::uint32_t>{0, 0})) << "a mean counts for the first";
   const Measurement first = Pool({Part("a", 10, {{"Y"}, {}}, {1, 2}), Part("b", 10, {{"Y"}, {}}, {3})}, false);
   EXPECT_EQ(first.samples.values[0], (std::vector<double>{1, 2}));
   EXPECT_EQ(first.set_aside[SetAsideReason::kDuplicate], 1U);
@@ -50,6 +52,7 @@ TEST(Pool, AFileForEachWavelength) {
       Pool({Part("g", 10, green, {1, 2, 3}), Part("b", 10, blue, {4, 5}), Part("g2", 30, wandered, {6})}, true);
   EXPECT_EQ(m.channels.wavelengths_nm, (std::vector<double>{450, 550}));
   ASSERT_EQ(m.samples.size(), 4U);
+  EXPECT_TRUE(m.samples.file.empty()) << "each is a channel";
   // Ascending wavelengths: the blue file's pairs come first.
   EXPECT_EQ(m.samples.values[0][0], 4);
   EXPECT_EQ(m.samples.values[1][0], 1);

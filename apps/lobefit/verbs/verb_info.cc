@@ -195,7 +195,8 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
   app->add_flag("--statistics", *statistics,
                 "albedo and reciprocity for a large table too (small ones show them anyway)");
   auto picture = std::make_shared<std::string>();
-  app->add_option("--png", *picture, "also write where the samples lie over the hemisphere to this picture");
+  app->add_option("--png", *picture,
+                  "also write where the samples lie over the hemisphere, and what was excluded, to this picture");
   options->AddTo(app);
   auto encoding = std::make_shared<std::string>();
   app->add_option("--encoding", *encoding, "of an image stack: how pixels are stored: linear, srgb, gamma:G");

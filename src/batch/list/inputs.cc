@@ -127,20 +127,7 @@ class Gatherer {
   bool IsMeasurement(const Path& path) const {
     const auto known = known_.find(std::filesystem::absolute(path).lexically_normal().string());
     if (known != known_.end() && known->second == SizeOf(path)) return true;
-    try {
-      const DecodedFile file(path);
-      try {
-        const InputFile input = {path, file.bytes()};
-        // Every text with separators could be rows of a goniometer whose columns --columns names.
-        if (RecogniseFormat(input).name == std::string_view("csv") && !common_.contains("columns"))
-          return NamesDirections(input);
-      } catch (const InputError&) {
-        return false;
-      }
-    } catch (const InputError&) {
-      // Damaged or not to be read: a task that fails, rather than one that nobody misses.
-    }
-    return true;
+    return HoldsMeasurement(path, common_.contains("columns"));
   }
 
   void AddFolder(const Path& folder) {

@@ -120,7 +120,15 @@ AltaHeader ReadAltaHeader(const InputFile& file) {
   while (header.end = lines.offset(), header.end_line = lines.line_number(), lines.Next(&line)) {
     if (Trim(line).empty()) continue;
     if (line[0] != '#') break;
-    if (line.size() == 1 || line[1] == ' ' || line[1] == '\t') continue;
+    if (line.size() == 1) continue;
+    if (line[1] == ' ' || line[1] == '\t') {
+      const std::string_view comment = Trim(line.substr(1));
+      header.sigma = header.sigma || comment == kAltaSigma;
+      // The names of channels are this program's note.
+      if (!comment.empty() && comment != kAltaSigma && !comment.starts_with("channels: "))
+        header.comments.emplace_back(comment);
+      continue;
+    }
     line.remove_prefix(1);
     const std::vector<std::string_view> words = SplitBlanks(line);
     if (words.empty()) continue;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lobefit/io/alta/directions.h"
@@ -11,6 +12,9 @@
 
 namespace lobefit {
 
+// The comment by which a file of this program says of its confidence intervals what the format leaves open.
+inline constexpr std::string_view kAltaSigma = "confidence intervals: one standard deviation of each value";
+
 struct AltaEntry {
   std::string value;
   std::size_t line;
@@ -18,6 +22,8 @@ struct AltaEntry {
 
 struct AltaHeader {
   std::map<std::string, AltaEntry> keys;
+  std::vector<std::string> comments;
+  bool sigma = false;        // the intervals are standard deviations, as kAltaSigma says
   bool ended = false;        // by an end mark
   bool stream = false;       // by #BEGIN_STREAM
   std::size_t end = 0;       // offset of the first byte after the header

@@ -65,8 +65,9 @@ class Intervals {
     offsets_.push_back(as_offsets_);
   }
 
-  // Weights 1 / variance into the samples, what was decided into the conventions.
-  void Finish(const RowPlaces& places, const ReadOptions& options, Measurement* measurement) {
+  // Standard deviations where the file says so, else weights 1 / variance into the samples; what was decided into the
+  // conventions.
+  void Finish(const RowPlaces& places, const ReadOptions& options, bool sigma, Measurement* measurement) {
     const bool bounds = options.alta_interval ? *options.alta_interval == IntervalKind::kBounds : !not_bounds_;
     const std::optional<std::size_t> wrong = bounds ? not_bounds_ : not_offsets_;
     if (wrong) {
@@ -85,6 +86,12 @@ class Intervals {
     }
     if (!std::isfinite(smallest)) {
       measurement->remarks.emplace_back("the confidence intervals (#VS) have no width and were not used");
+      return;
+    }
+    if (sigma && !has_pairs_) {
+      for (double& v : variance) v = std::sqrt(std::max(v, smallest));
+      measurement->samples.sigma = std::move(variance);
+      measurement->conventions["alta-interval"] = "standard deviation (header)";
       return;
     }
     std::size_t without = 0;
@@ -118,8 +125,8 @@ class Intervals {
 
 class RowTaker {
  public:
-  RowTaker(const RowPlaces& places, const AltaLayout& layout)
-      : places_(places), layout_(layout), builder_(layout.channels), values_(layout.outputs) {}
+  RowTaker(const RowPlaces& places, const AltaLayout& layout, bool sigma)
+      : places_(places), layout_(layout), sigma_(sigma), builder_(layout.channels), values_(layout.outputs) {}
 
   // One row: coordinates, values, columns of confidence, and its place.
   void Take(const double* row, const double* columns, std::size_t place) {
@@ -141,7 +148,7 @@ class RowTaker {
   }
 
   Measurement Finish(const ReadOptions& options) {
-    if (layout_.interval_columns() > 0) intervals_.Finish(places_, options, &builder_.measurement());
+    if (layout_.interval_columns() > 0) intervals_.Finish(places_, options, sigma_, &builder_.measurement());
     Measurement measurement = builder_.Finish();
     ScaleToMeanOne(&measurement.samples.weight);
     return measurement;
@@ -150,6 +157,7 @@ class RowTaker {
  private:
   RowPlaces places_;
   const AltaLayout& layout_;
+  bool sigma_;
   MeasurementBuilder builder_;
   std::vector<double> values_;
   Intervals intervals_;
@@ -172,7 +180,7 @@ Measurement ReadText(const InputFile& file, const AltaHeader& header, AltaLayout
           fields.size() == plain + layout->outputs * static_cast<std::size_t>(layout->intervals[0])) {
         layout->intervals.assign(layout->outputs, layout->intervals[0]);
       }
-      taker.emplace(RowPlaces{file}, *layout);
+      taker.emplace(RowPlaces{file}, *layout, header.sigma);
     }
     const std::size_t expected = plain + layout->interval_columns();
     if (fields.size() != expected) {
@@ -244,7 +252,7 @@ Measurement ReadBinary(const InputFile& file, const AltaHeader& header, AltaLayo
                    "' where #END_STREAM should end the data; "
                    "#SAMPLE_COUNT, #DIM or #VS does not fit the file");
   }
-  RowTaker taker({file, header.end, columns * sizeof(double)}, *layout);
+  RowTaker taker({file, header.end, columns * sizeof(double)}, *layout, header.sigma);
   std::vector<double> row(columns), intervals(layout->interval_columns());
   const char* data = file.bytes.data() + header.end;
   for (std::size_t r = 0; r < rows; ++r) {
@@ -280,6 +288,7 @@ Measurement ReadAlta(const InputFile& file, const ReadOptions& options) {
   }
   Measurement measurement =
       binary || header.stream ? ReadBinary(file, header, &layout, options) : ReadText(file, header, &layout, options);
+  measurement.comments = header.comments;
   measurement.isotropic = layout.input->isotropic;
   measurement.conventions["angle-unit"] = "rad (format)";
   measurement.conventions["value-kind"] = Name(layout.kind) + (layout.kind_from_option  ? ""

@@ -42,6 +42,17 @@ Channels ReadChannels(WordReader* words) {
   return channels;
 }
 
+// Those of the head.
+std::vector<std::string> CommentsOf(std::string_view bytes) {
+  std::vector<std::string> comments;
+  LineReader lines(bytes);
+  std::string_view line;
+  while (lines.Next(&line) && (Trim(line).empty() || Trim(line).starts_with('#'))) {
+    if (const std::string_view text = Trim(line); text.size() > 1) comments.emplace_back(Trim(text.substr(1)));
+  }
+  return comments;
+}
+
 }  // namespace
 
 bool IsCornell(std::string_view bytes) {
@@ -83,6 +94,7 @@ Measurement ReadCornell(const InputFile& file, const ReadOptions&) {
     builder.Add(FromSpherical(angles[0], angles[1]), FromSpherical(angles[2], angles[3]), values.data(), line);
   }
   Measurement measurement = builder.Finish();
+  measurement.comments = CommentsOf(file.bytes);
   measurement.conventions["angle-unit"] = "rad (format)";
   measurement.conventions["value-kind"] = "f (format)";
   measurement.conventions["incident"] = "towards (format)";

@@ -17,17 +17,18 @@ constexpr std::array<std::string_view, 11> kAzimuthal = {"phi", "ph",     "azimu
                                                          "azi", "azimut", "azimutal", "varphi",    "acimut"};
 constexpr std::array<std::string_view, 8> kAngle = {"angle",  "angles", "winkel",    "angulo",
                                                     "angolo", "ang",    "direction", "plane"};
-constexpr std::array<std::string_view, 27> kLight = {
+constexpr std::array<std::string_view, 28> kLight = {
     "i",         "in",      "inc",      "incident",     "incidence",    "incoming",     "incidencia",
     "incidenza", "einfall", "einfalls", "illumination", "illum",        "illuminating", "light",
     "source",    "src",     "lamp",     "laser",        "sun",          "solar",        "l",
-    "input",     "ill",     "0",        "incid",        "einfallender", "beleuchtung"};
-constexpr std::array<std::string_view, 44> kViewer = {
-    "o",    "out",      "outgoing",    "r",          "refl",     "reflected", "reflection", "reflexion",  "s",
-    "scat", "scatter",  "scattered",   "scattering", "sca",      "v",         "view",       "viewing",    "viewer",
-    "obs",  "observer", "observation", "observed",   "e",        "em",        "emission",   "emergence",  "emergent",
-    "exit", "exitance", "exitant",     "exiting",    "detector", "det",       "d",          "receiver",   "receive",
-    "rec",  "sensor",   "camera",      "cam",        "output",   "ausfall",   "diffusion",  "riflessione"};
+    "input",     "ill",     "0",        "incid",        "einfallender", "beleuchtung",  "illumin"};
+constexpr std::array<std::string_view, 48> kViewer = {
+    "o",        "out",       "outgoing",  "r",           "refl",        "reflected", "reflection", "reflexion",
+    "s",        "scat",      "scatter",   "scattered",   "scattering",  "sca",       "v",          "view",
+    "viewing",  "viewer",    "obs",       "observer",    "observation", "observed",  "e",          "em",
+    "emission", "emergence", "emergent",  "exit",        "exitance",    "exitant",   "exiting",    "detector",
+    "det",      "d",         "receiver",  "receive",     "rec",         "sensor",    "camera",     "cam",
+    "output",   "ausfall",   "diffusion", "riflessione", "rcv",         "rcvr",      "recv",       "sens"};
 constexpr std::array<std::string_view, 10> kRelative = {"relative", "rel",     "delta",   "diff",    "difference",
                                                         "d",        "between", "relatif", "relativ", "dif"};
 bool Has(const NameList& words, std::initializer_list<std::string_view> any) {
@@ -163,7 +164,9 @@ bool ClassifyAngle(const NameList& words, bool magnitude, CsvColumn* column) {
     }
     return true;
   }
-  if (kinds + angles == 0) return false;
+  // "observation (deg)": what a direction has in degrees is its polar angle.
+  const bool by_unit = words.size() == 1 && words[0].size() > 2 && ParseAngleUnit(column->unit);
+  if (kinds + angles == 0 && !by_unit) return false;
   const bool light = lights > 0;
   column->form = FormOf(elevations, cosines);
   SetCoordinate(azimuthal > 0 ? (light ? Coordinate::kPhiI : Coordinate::kPhiO)

@@ -237,8 +237,13 @@ class AngleFinder {
         directions.SetOffset(column.reversed, column.magnitude);
       layout_.coordinates.emplace_back(column.coordinate, i);
     }
+    const CsvColumn* first = nullptr;
     for (const CsvColumn& column : columns_) {
-      if (column.role == ColumnRole::kFixed) directions.Give(column.coordinate, Scale(column), column.form);
+      if (column.role != ColumnRole::kFixed) continue;
+      if (first == nullptr) first = &column;
+      if (Scale(column) != Scale(*first) || column.form != first->form)
+        Fail("the columns " + Quoted(*first) + " and " + Quoted(column) + " have different units; use one unit");
+      directions.Give(column.coordinate, Scale(column), column.form);
     }
     if (head_) directions.Give(*head_, Scale(*head_, std::nullopt));
     for (const FixedCoordinate& fixed : header_.keys.fixed) {
@@ -251,11 +256,21 @@ class AngleFinder {
     const bool other_phi = directions.Has(C::kPhiO) || directions.Has(C::kDeltaPhi) || directions.Has(C::kPhiI);
     if (directions.Has(C::kAzimuth) && other_phi)
       Fail("both azimuth and phi columns are given; name them phi_i and phi_o");
+    const bool azimuths = other_phi || directions.Has(C::kAzimuth) || directions.Has(C::kPhase) ||
+                          directions.Has(C::kThetaH) || directions.Has(C::kWiX) || Column(C::kPhi) != nullptr;
+    if (!header_.keys.lone_azimuth.empty() && !azimuths) {
+      Fail(
+          "the head states '" + Excerpt(header_.keys.lone_azimuth, 40) +
+          "', which does not say whose azimuth it is; name it phi_i, phi_o or dphi (180 degrees is the mirror's side)");
+    }
     const std::string missing = directions.Missing();
     if (!missing.empty()) {
       std::vector<std::string> names;
       for (const CsvColumn& column : columns_) names.push_back(Excerpt(column.name));
       Fail("no column holds " + missing + "; the columns are " + Excerpt(Join(names), 200) +
+           (missing.find("(theta_") == std::string::npos
+                ? ""
+                : "; an angle that all rows share is stated by a line '# theta_i: 30', or by FILE:theta_i=30") +
            "; allowed: " + AllowedColumns());
     }
     const auto alpha = std::find_if(columns_.begin(), columns_.end(), [](const CsvColumn& column) {

@@ -244,8 +244,24 @@ void ParseUnit(CsvColumn* column) {
       if (!column->value_scale && column->role == ColumnRole::kValue)
         refuse("1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.");
       break;
+    case ColumnRole::kChannel:
+      // That of a wavelength in the name.
+      if (column->wavelength_nm > 0 && ParseWavelengthUnit(unit)) break;
+      column->value_scale = ParseValueScale(unit);
+      if (!column->value_scale) refuse("1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.");
+      break;
     case ColumnRole::kSigma:
       if (unit == "%" || unit == "percent") column->relative = true;
+      // "k=2" below "U".
+      if (unit.starts_with("k=") && ParseDouble(std::string_view(unit).substr(2)).value_or(0) > 0) {
+        column->coverage_factor = *ParseDouble(std::string_view(unit).substr(2));
+        column->problem.clear();
+        column->unit.clear();
+      } else if (unit == "ppm" || unit == "rel" || unit == "rel.") {
+        column->relative = true;
+      } else if (!column->relative && !ParseValueScale(unit)) {
+        refuse("1/sr, %, ppm, dB, a power of ten as in 1e-3/sr");
+      }
       break;
     default:
       break;
@@ -313,7 +329,9 @@ CsvColumn ClassifyColumn(std::string_view name) {
 }
 
 void SetUnit(std::string_view unit, CsvColumn* column) {
-  if (!column->unit.empty()) return;
+  // The unit in the name of a channel is its wavelength's.
+  const bool of_wavelength = column->role == ColumnRole::kChannel && column->wavelength_nm > 0;
+  if (!column->unit.empty() && !of_wavelength) return;
   std::string_view text = Trim(unit);
   if (text.size() > 1 && (text.front() == '(' || text.front() == '[') && (text.back() == ')' || text.back() == ']'))
     text = text.substr(1, text.size() - 2);

@@ -6,6 +6,7 @@
 
 #include "lobefit/base/csv_fields.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/head_lines.h"
 #include "lobefit/io/csv/mapping.h"
 #include "lobefit/io/csv/no_value.h"
 #include "lobefit/io/text/place.h"
@@ -13,7 +14,7 @@
 namespace lobefit {
 namespace {
 
-using Fields = std::vector<std::string_view>;
+using Fields = CsvFields;
 
 // A head is looked for in so much of the file.
 constexpr std::size_t kMostColumns = 65536;
@@ -24,114 +25,6 @@ struct Line {
   std::string_view text;
   bool comment = false;
 };
-
-Fields SplitFields(std::string_view text, char separator) {
-  Fields fields;
-  SplitCsvLine(text, separator, &fields);
-  return fields;
-}
-
-// "0,55", "-1,4e-14".
-bool HasDecimalComma(std::string_view field) {
-  const std::size_t comma = field.find(',');
-  if (comma == std::string_view::npos) return false;
-  std::string point(field);
-  point[comma] = '.';
-  return ParseDouble(point).has_value();
-}
-
-// "1.234,5" and "1,234.5".
-bool HasThousandsSeparator(std::string_view field) {
-  const std::size_t comma = field.find(','), point = field.find('.');
-  if (comma == std::string_view::npos || point == std::string_view::npos) return false;
-  return field.find_first_not_of("+-0123456789.,") == std::string_view::npos;
-}
-
-// Between commas a number may have one of its own within quotes.
-bool IsNumeric(std::string_view field) {
-  std::string storage;
-  field = Unquoted(field, &storage);
-  return ParseCsvNumber(field, '.') || HasDecimalComma(field) || HasThousandsSeparator(field);
-}
-
-// "Date: 12", which a comma may split from what follows.
-bool IsKeyed(std::string_view field) {
-  const std::size_t mark = field.find_first_of(":=");
-  return mark != std::string_view::npos && mark > 0 &&
-         std::any_of(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(mark),
-                     [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
-}
-
-bool NamesAnything(std::string_view field) {
-  std::string storage;
-  const CsvColumn column = ClassifyColumn(Unquoted(field, &storage));
-  return column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kValue ||
-         column.role == ColumnRole::kWavelength || column.role == ColumnRole::kFixed;
-}
-
-// At least two numbers, at least as many of them as of anything else, and no name of a column.
-bool IsData(const Fields& fields) {
-  std::size_t numbers = 0, others = 0;
-  for (const std::string_view field : fields) {
-    if (IsNumeric(field)) {
-      ++numbers;
-    } else if (!Trim(field).empty()) {
-      ++others;
-    }
-  }
-  if (numbers < 2 || numbers < others) return false;
-  return others == 0 || std::none_of(fields.begin(), fields.end(), [&](std::string_view field) {
-           return !IsNumeric(field) && !Trim(field).empty() && (IsKeyed(field) || NamesAnything(field));
-         });
-}
-
-std::vector<CsvColumn> Classify(const Fields& names) {
-  std::vector<CsvColumn> columns;
-  std::string storage;
-  for (const std::string_view name : names) columns.push_back(ClassifyColumn(Unquoted(name, &storage)));
-  return columns;
-}
-
-bool NamesADirection(const std::vector<CsvColumn>& columns) {
-  return columns.size() > 1 && std::any_of(columns.begin(), columns.end(), [](const CsvColumn& column) {
-           return column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed;
-         });
-}
-
-// "theta\phi": rows and columns of a table of one incidence.
-bool IsCorner(std::string_view name, CsvColumn* rows, Coordinate* columns) {
-  std::string storage;
-  name = Unquoted(name, &storage);
-  const std::size_t at = name.find_first_of("\\/|");
-  if (at == std::string_view::npos) return false;
-  const CsvColumn left = ClassifyColumn(name.substr(0, at)), right = ClassifyColumn(name.substr(at + 1));
-  if (left.role != ColumnRole::kCoordinate || right.role != ColumnRole::kCoordinate ||
-      left.coordinate == right.coordinate)
-    return false;
-  *rows = left;
-  rows->name = std::string(name);
-  *columns = right.coordinate;
-  return true;
-}
-
-bool IsUnitOrBlank(std::string_view field) {
-  std::string storage;
-  std::string_view text = Unquoted(field, &storage);
-  if (text.size() > 1 && (text.front() == '(' || text.front() == '[')) text = text.substr(1, text.size() - 2);
-  return Trim(text).empty() || ParseAngleUnit(text) || ParseValueScale(text) || ParseWavelengthUnit(text) ||
-         Trim(text) == "#" || ToLower(Trim(text)) == "grad";
-}
-
-// Cells of a merged heading stand empty but for the first.
-std::vector<std::string> Combined(const Fields& upper, const Fields& lower) {
-  std::vector<std::string> names;
-  std::string heading, storage;
-  for (std::size_t i = 0; i < lower.size(); ++i) {
-    if (i < upper.size() && !Trim(upper[i]).empty()) heading = std::string(Unquoted(upper[i], &storage));
-    names.push_back(heading + " " + std::string(Unquoted(lower[i], &storage)));
-  }
-  return names;
-}
 
 class HeaderReader {
  public:
@@ -151,6 +44,8 @@ class HeaderReader {
     const bool named = FindNames();
     ReadTitleKeys();
     if (!named) FailWithoutNames();
+    // Names may stand in a comment.
+    if (IsComment(header_.names)) std::erase(header_.comments, std::string(CommentText(header_.names)));
     mapping_.Fix(file_, header_.names_line, header_.columns, &header_.keys);
     if (mapping_.head()) header_.head_coordinate = mapping_.head();
     TakeUnits();
@@ -199,6 +94,7 @@ class HeaderReader {
         if (lines_[i].comment) continue;
         const Fields fields = SplitFields(lines_[i].text, candidate);
         if (fields.size() < 2 || !IsData(fields)) continue;
+        if (candidate == ',' && HasCommasWithinNumbers(lines_[i].text, fields)) continue;
         header_.separator = candidate;
         data_ = i;
         FindDecimalMark();
@@ -255,7 +151,7 @@ class HeaderReader {
 
   bool TryNames(std::size_t at) {
     const std::string_view text = lines_[at].comment ? CommentText(lines_[at].text) : lines_[at].text;
-    const Fields fields = SplitFields(text, header_.separator);
+    const Fields fields = SplitNames(text, header_.separator, row_fields_);
     if (fields.size() < 2 || (fields.size() == 2 && IsNumeric(fields[1]))) return false;
     std::vector<CsvColumn> columns = Classify(fields);
     CsvColumn rows;
@@ -291,7 +187,8 @@ class HeaderReader {
   }
 
   bool FindNames() {
-    const std::size_t fields = data_ < lines_.size() ? SplitFields(lines_[data_].text, header_.separator).size() : 0;
+    row_fields_ = data_ < lines_.size() ? SplitFields(lines_[data_].text, header_.separator).size() : 0;
+    const std::size_t fields = row_fields_;
     for (const bool comments : {false, true}) {
       for (std::size_t i = data_; i-- > 0;) {
         if (lines_[i].comment != comments || !TryNames(i)) continue;
@@ -376,30 +273,57 @@ class HeaderReader {
 
   void ReadCommentKeys() {
     for (std::size_t i = 0; i < data_; ++i) {
-      if (lines_[i].comment) ReadKey(file_, lines_[i].number, CommentText(lines_[i].text), &header_.keys);
+      if (!lines_[i].comment) continue;
+      const std::string_view text = CommentText(lines_[i].text);
+      if (!ReadKey(file_, lines_[i].number, text, &header_.keys) && !text.empty())
+        header_.comments.emplace_back(PlainComment(text));
     }
   }
 
   // Titles above the names: "Wavelength (nm): 633;;;;", "AOI;30;deg".
   void ReadTitleKeys() {
     for (std::size_t i = 0; i < data_; ++i) {
-      if (i != names_ && !lines_[i].comment)
-        ReadKey(file_, lines_[i].number, SplitFields(lines_[i].text, header_.separator), &header_.keys);
+      if (i == names_ || lines_[i].comment) continue;
+      const Fields fields = SplitFields(lines_[i].text, header_.separator);
+      if (ReadKey(file_, lines_[i].number, fields, &header_.keys) || i > names_) continue;
+      std::vector<std::string> filled;
+      std::string storage;
+      for (const std::string_view field : fields) {
+        if (!Trim(field).empty()) filled.emplace_back(Unquoted(field, &storage));
+      }
+      // More are a heading of columns.
+      if (header_.separator == kBlankSeparator) filled = {std::string(Trim(lines_[i].text))};
+      if (filled.size() <= 2) header_.comments.push_back(Join(filled, " "));
     }
   }
 
   void TakeUnits() {
     header_.first_data_line = data_ < lines_.size() ? lines_[data_].number : lines_[names_].number + 1;
-    for (std::size_t i = names_ + 1; i > 0 && i < data_; ++i) {
-      if (lines_[i].comment) continue;
-      const Fields units = SplitFields(lines_[i].text, header_.separator);
-      if (units.size() > header_.columns.size() + 1 || !std::all_of(units.begin(), units.end(), IsUnitOrBlank))
-        continue;
-      std::string storage;
-      for (std::size_t c = 0; c < std::min(units.size(), header_.columns.size()); ++c)
-        SetUnit(Unquoted(units[c], &storage), &header_.columns[c]);
-    }
+    for (std::size_t i = names_ + 1; i > 0 && i < data_; ++i) TakeUnitsOf(i, false);
+    if (names_ > 0 && names_ < lines_.size()) TakeUnitsOf(names_ - 1, true);
     for (const std::string& remark : header_.keys.remarks) header_.remarks.push_back(remark);
+  }
+
+  // A row of units; one that holds a unit which is not known is not passed over, see CsvColumn::problem. Above the names
+  // titles stand, so there it must speak of angles.
+  void TakeUnitsOf(std::size_t line, bool above) {
+    if (lines_[line].comment) return;
+    const Fields units = SplitFields(lines_[line].text, header_.separator);
+    if (units.size() > header_.columns.size() + 1) return;
+    std::string storage;
+    std::size_t known = 0, angles = 0, others = 0;
+    for (const std::string_view unit : units) {
+      known += IsUnitOrBlank(unit) ? 1 : 0;
+      angles += ParseAngleUnit(Unquoted(unit, &storage)) ? 1 : 0;
+      others += IsPerSteradian(PlainUnit(Unquoted(unit, &storage))) ? 1 : 0;
+    }
+    const bool all = known == units.size();
+    const bool some =
+        !above && angles + others > 0 && units.size() == header_.columns.size() &&
+        std::none_of(units.begin(), units.end(), [](std::string_view unit) { return Trim(unit).empty(); });
+    if (above ? !all || angles == 0 : !all && !some) return;
+    for (std::size_t c = 0; c < std::min(units.size(), header_.columns.size()); ++c)
+      SetUnit(Unquoted(units[c], &storage), &header_.columns[c]);
   }
 
   void TakeRows() {
@@ -427,71 +351,10 @@ class HeaderReader {
   std::vector<Line> lines_;
   std::optional<char> stated_separator_;
   std::size_t data_ = 0, names_ = static_cast<std::size_t>(-1), last_line_ = 1;
+  std::size_t row_fields_ = 0;  // of the first row
 };
 
 }  // namespace
-
-bool IsComment(std::string_view line) {
-  line = Trim(line);
-  return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
-}
-
-std::string_view CommentText(std::string_view line) {
-  line = Trim(line);
-  line.remove_prefix(line.starts_with("//") ? 2 : 1);
-  return Trim(line);
-}
-
-CsvLines::CsvLines(std::string_view bytes)
-    : bytes_(bytes), lines_(bytes), has_quotes_(bytes.find('"') != std::string_view::npos) {}
-
-bool CsvLines::Next(std::string_view* line) {
-  const std::size_t begin = lines_.offset();
-  if (!lines_.Next(line)) return false;
-  first_line_ = lines_.line_number();
-  if (!has_quotes_ || line->find('"') == std::string_view::npos || IsComment(*line)) return true;
-  // A quoted cell of a heading may have a few lines; a lone quote must not swallow the file.
-  constexpr int kMostLines = 8;
-  const auto open = [](std::string_view text) {
-    return EndsWithinQuotes(text, ',') || EndsWithinQuotes(text, ';') || EndsWithinQuotes(text, '\t');
-  };
-  LineReader ahead = lines_;
-  std::string_view joined = *line, next;
-  for (int i = 1; i < kMostLines && open(joined); ++i) {
-    if (!ahead.Next(&next)) return true;
-    joined = bytes_.substr(begin, ahead.offset() - begin);
-    while (!joined.empty() && (joined.back() == '\n' || joined.back() == '\r')) joined.remove_suffix(1);
-    if (open(joined)) continue;
-    lines_ = ahead;
-    *line = joined;
-  }
-  return true;
-}
-
-void SplitCsvLine(std::string_view line, char separator, std::vector<std::string_view>* fields) {
-  if (separator != kBlankSeparator) {
-    SplitQuoted(line, separator, fields);
-    return;
-  }
-  *fields = SplitBlanks(line);
-}
-
-std::optional<double> ParseCsvNumber(std::string_view field, char decimal_mark) {
-  field = Trim(field);
-  if (field.ends_with("\xc2\xb0")) field = Trim(field.substr(0, field.size() - 2));
-  // Fortran writes the exponents of its double precision with a D.
-  const std::size_t exponent = field.find_first_of("dD", 1);
-  if (exponent != std::string_view::npos && field[exponent - 1] >= '.' && field[exponent - 1] <= '9') {
-    std::string text(field);
-    text[exponent] = 'e';
-    return ParseCsvNumber(text, decimal_mark);
-  }
-  if (decimal_mark == '.') return ParseDouble(field);
-  if (field.find('.') != std::string_view::npos && field.find(',') != std::string_view::npos) return std::nullopt;
-  std::string point(field);
-  std::replace(point.begin(), point.end(), decimal_mark, '.');
-  return ParseDouble(point);
-}
 
 CsvHeader ReadCsvHeader(const InputFile& file, const std::string& columns) {
   return HeaderReader(file, columns).Read();

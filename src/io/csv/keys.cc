@@ -8,35 +8,16 @@
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/mapping.h"
 #include "lobefit/io/csv/no_value.h"
+#include "lobefit/io/csv/phrases.h"
 #include "lobefit/io/csv/row_conditions.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/measurement/exclusion.h"
+#include "lobefit/measurement/polarisation.h"
 
 namespace lobefit {
 namespace {
-
-// "30 deg", "633nm", "0,5": a number and the unit behind it.
-struct Quantity {
-  double number = 0;
-  std::string unit;
-};
-
-std::optional<Quantity> ParseQuantity(std::string_view text) {
-  std::string plain(Trim(text));
-  std::replace(plain.begin(), plain.end(), ',', '.');
-  for (std::size_t n = plain.size(); n > 0; --n) {
-    const char last = plain[n - 1];
-    if (!(last >= '0' && last <= '9') && last != '.') continue;
-    const std::optional<double> number = ParseDouble(std::string_view(plain).substr(0, n));
-    if (!number || !std::isfinite(*number)) continue;
-    std::string_view unit = Trim(std::string_view(plain).substr(n));
-    if (unit.size() > 1 && (unit.front() == '(' || unit.front() == '[')) unit = unit.substr(1, unit.size() - 2);
-    return Quantity{*number, PlainUnit(unit)};
-  }
-  return std::nullopt;
-}
 
 std::string KeyName(std::string_view text) {
   std::string name;
@@ -101,63 +82,26 @@ const std::vector<std::string>& KnownKeys() {
   return keys;
 }
 
-bool ReadCoordinate(std::string_view key, std::string_view word, CsvKeys* keys) {
-  const CsvColumn column = ClassifyColumn(key);
-  const std::optional<Quantity> quantity = ParseQuantity(word);
-  if (!quantity) return false;
-  if (column.role == ColumnRole::kWavelength) {
-    const std::string& unit = quantity->unit.empty() ? column.unit : quantity->unit;
-    const std::optional<WavelengthUnit> known =
-        unit.empty() ? std::optional(WavelengthUnit{quantity->number < 100 ? 1e3 : 1.0}) : ParseWavelengthUnit(unit);
-    if (!known || !(quantity->number > 0)) return false;
-    keys->wavelength_nm = std::round(known->ToNm(quantity->number) * 1e6) / 1e6;
-    return true;
+// What concerns the values and is not used, and a key that is none, though it has a word of one: said, so that a unit
+// does not go unread in silence.
+void RemarkOnUnused(std::size_t line, std::string_view key, const std::string& name, std::string_view word,
+                    CsvKeys* keys) {
+  if (name.empty() || name.size() > 30 || Trim(word).empty() || key == "comment") return;
+  const ColumnRole role = ClassifyColumn(key).role;
+  if (role == ColumnRole::kPolarisation && !IsUnpolarised(ToLower(word))) {
+    keys->remarks.push_back("line " + std::to_string(line) + ": the polarisation is '" + Excerpt(word, 40) +
+                            "': the values are f_r of that light, not of unpolarised light");
+    return;
   }
-  if (column.role != ColumnRole::kCoordinate || column.coordinate == Coordinate::kTheta ||
-      column.coordinate == Coordinate::kPhi)
-    return false;
-  const std::optional<AngleUnit> unit = quantity->unit.empty() ? column.angle_unit : ParseAngleUnit(quantity->unit);
-  if (!quantity->unit.empty() && !unit) return false;
-  keys->Fix({column.coordinate, quantity->number, unit, column.form});
-  return true;
-}
-
-// "All angles are in radians."
-bool ReadSentence(std::string_view text, CsvKeys* keys) {
-  const std::string lower = ToLower(text);
-  std::vector<std::string_view> words = SplitBlanks(lower);
-  for (std::string_view& word : words) {
-    while (!word.empty() && std::string_view(".,;()[]").find(word.back()) != std::string_view::npos)
-      word.remove_suffix(1);
-    while (!word.empty() && (word.front() == '(' || word.front() == '[')) word.remove_prefix(1);
+  if (role == ColumnRole::kSigma && (name.find("cert") != std::string::npos || word.ends_with('%'))) {
+    keys->remarks.push_back(
+        "line " + std::to_string(line) + ": the uncertainty that '" + Excerpt(key, 40) +
+        "' states for all values was not used; write it into a column, as 'relative uncertainty (%)'");
+    return;
   }
-  static constexpr std::array<std::string_view, 6> kAngleWords = {"angles",  "angle",  "winkel",
-                                                                  "angulos", "angoli", "azimuths"};
-  constexpr std::size_t kMostWords = 12;  // more are a description
-  std::optional<AngleUnit> unit;
-  bool angles = false;
-  if (words.size() > kMostWords) return false;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    angles = angles || std::find(kAngleWords.begin(), kAngleWords.end(), words[i]) != kAngleWords.end();
-    const std::optional<AngleUnit> own = i > 0 ? ParseAngleUnit(words[i]) : std::nullopt;
-    if (!own) continue;
-    if (unit) return false;
-    // "30 deg" is an angle.
-    if (words[i - 1] != "in" && words[i - 1] != "are" && words[i - 1] != "angles") return false;
-    unit = own;
-  }
-  if (!angles || !unit || keys->angle_unit) return false;
-  keys->angle_unit = unit;
-  return true;
-}
-
-// A key that is none, though it has a word of one: said, so that a unit does not go unread in silence.
-void RemarkOnResemblance(std::size_t line, std::string_view key, const std::string& name, std::string_view word,
-                         CsvKeys* keys) {
-  if (name.empty() || name.size() > 30 || Trim(word).empty()) return;
   const auto has = [&](std::string_view part) { return name.find(part) != std::string::npos; };
-  const bool resembles = has("unit") || has("sense") || has("convention") || has("cosine") || ParseAngleUnit(word) ||
-                         ParseIncidentSense(word) || ParseValueKind(word);
+  const bool resembles = has("unit") || has("sense") || has("convention") || has("cosine") || has("scale") ||
+                         has("factor") || ParseAngleUnit(word) || ParseIncidentSense(word) || ParseValueKind(word);
   if (resembles) {
     keys->remarks.push_back("line " + std::to_string(line) + ": the key '" + Excerpt(key) +
                             "' is not known and was not used; known are " + Join(KnownKeys()) +
@@ -185,13 +129,14 @@ const FixedCoordinate* CsvKeys::Find(Coordinate coordinate) const {
 
 bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, CsvKeys* keys) {
   const std::size_t at = text.find_first_of(":=");
-  if (at == std::string_view::npos) return ReadSentence(text, keys);
+  if (at == std::string_view::npos) return ReadSentence(text, keys) || ReadPhrase(text, keys);
+  if (ReadCoordinates(text, keys)) return true;
   const std::string_view key = Trim(text.substr(0, at)), word = Trim(text.substr(at + 1));
   const std::string name = KeyName(key);
   if (Is(name, {"angle-unit", "angle-units", "angular-unit", "angular-units", "unit-of-angle", "unit-of-angles",
                 "units-of-angle", "units-of-angles"})) {
     Set(file, line, "angle-unit", word, "deg, rad, gon, mrad, arcmin, arcsec", ParseAngleUnit(word), &keys->angle_unit);
-  } else if (Is(name, {"units", "unit", "angles", "angle"}) && ParseAngleUnit(word)) {
+  } else if (Is(name, {"units", "unit", "angles", "angle", "winkel", "angulos", "angoli"}) && ParseAngleUnit(word)) {
     keys->angle_unit = ParseAngleUnit(word);
   } else if (Is(name, {"value-kind", "values-kind", "kind-of-value", "kind-of-values"})) {
     Set(file, line, "value-kind", word, AllowedValueKinds(), KindOf(word), &keys->value_kind);
@@ -245,11 +190,11 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
     if (!ParseRepeatedRows(word))
       FailAtLine(file, line, "repeated is '" + Excerpt(word) + "'; allowed are first, mean");
     keys->repeated = std::string(word);
-  } else if (!ReadCoordinate(key, word, keys)) {
+  } else if (!ReadUnits(name, word, keys) && !ReadCoordinate(key, word, keys)) {
     // A misspelt key would leave the file read in the wrong unit without a word.
     const std::string suggestion = name.size() > 5 ? DidYouMean(name, KnownKeys()) : "";
     if (!suggestion.empty()) FailAtLine(file, line, "the key '" + Excerpt(key) + "' is not known" + suggestion);
-    RemarkOnResemblance(line, key, name, word, keys);
+    RemarkOnUnused(line, key, name, word, keys);
     return false;
   }
   return true;
@@ -266,7 +211,11 @@ bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::str
   const bool marked = filled[0].find_first_of(":=") != std::string_view::npos ||
                       (filled.size() > 1 && filled[1].find_first_of(":=") == 0);
   if (!marked) {
-    if (filled.size() == 1) return ReadSentence(filled[0], keys);
+    if (filled.size() == 1) return ReadSentence(filled[0], keys) || ReadPhrase(filled[0], keys);
+    // "Scan 3, incidence 30 deg"
+    for (const std::string_view field : filled) {
+      if (ReadPhrase(field, keys)) return true;
+    }
     text += ':';
   }
   for (std::size_t i = 1; i < filled.size(); ++i) {

@@ -31,6 +31,7 @@ struct CsvKeys {
   std::optional<double> wavelength_nm;
   StatedInstrument instrument;
   std::vector<FixedCoordinate> fixed;  // each coordinate at most once
+  std::string lone_azimuth;            // "Azimuth: 90", whose it is not said
   std::string columns, where, no_value, exclude, value_column, repeated;
   std::vector<std::string> remarks;  // keys that resemble a known one
 

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/angles.h"
 #include "lobefit/io/csv/mapping.h"
 #include "lobefit/io/csv/name_rules.h"
+#include "lobefit/io/csv/polarised_columns.h"
 #include "lobefit/io/csv/row_conditions.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
@@ -45,7 +47,7 @@ class LayoutBuilder {
     const std::string value_column = options_.value_column.value_or(header_.keys.value_column);
     if (!value_column.empty()) {
       ChooseValueColumn(value_column);
-    } else if (!ChooseFixedGroups()) {
+    } else if (!ChooseFixedGroups() && !ChoosePolarised()) {
       ChooseChannels();
     }
     FindWavelength();
@@ -113,23 +115,6 @@ class LayoutBuilder {
 
   // "f_R" is f_r where no "f_G" and "f_B" stand beside it, and a channel where they do.
   void ResolveLetters() {
-    // "f_s" is the scattered light's, but beside "f_p" one of two polarisations.
-    for (const CsvColumn& column : columns_) {
-      const NameWords name = SplitName(column.name);
-      if (name.words.size() < 2 || name.words.back() != "p" || column.role == ColumnRole::kCoordinate) continue;
-      for (const CsvColumn& other : columns_) {
-        NameWords sibling = SplitName(other.name);
-        if (sibling.words.empty() || sibling.words.back() != "s" || options_.value_column ||
-            !header_.keys.value_column.empty())
-          continue;
-        sibling.words.back() = "p";
-        std::optional<ValueKind> kind;
-        if (sibling.words != name.words || !NamesValue(sibling.words[0], &kind)) continue;
-        Fail("the columns " + Quoted(other) + " and " + Quoted(column) +
-             " are two polarisations; choose one with --value-column, or write their mean, f_r of unpolarised light, "
-             "into a column of its own");
-      }
-    }
     for (CsvColumn& column : columns_) {
       if (column.role != ColumnRole::kValue) continue;
       const NameWords split = SplitName(column.name);
@@ -188,9 +173,37 @@ class LayoutBuilder {
         layout_.groups.push_back({{{columns_[i].coordinate, columns_[i].fixed}}, {i}});
     }
     if (layout_.groups.empty()) return false;
+    const auto value = std::find_if(columns_.begin(), columns_.end(),
+                                    [](const CsvColumn& column) { return column.role == ColumnRole::kValue; });
+    if (value != columns_.end()) {
+      Fail("the column " + Quoted(columns_[layout_.groups[0].values[0]]) +
+           " holds values at one angle, by its name, but " + Quoted(*value) +
+           " holds values too; say what they are by --columns, or choose one with --value-column");
+    }
     layout_.channels.names = {"Y"};
     measurement_->conventions["value-column"] =
         "one for each angle: " + std::to_string(layout_.groups.size()) + " columns";
+    return true;
+  }
+
+  // "f_s" is the scattered light's, but beside "f_p" one of two polarisations. A column of their mean is used as it is.
+  bool ChoosePolarised() {
+    const PolarisedColumns polarised = FindPolarisedColumns(columns_);
+    for (std::size_t k = 0; k < polarised.columns.size(); ++k) {
+      CsvColumn& column = columns_[polarised.columns[k]];
+      column.role = polarised.mean_is_given ? ColumnRole::kIgnored : ColumnRole::kValue;
+      NamesValue(SplitName(column.name).words[0], &column.value_kind);
+      const std::string unit = std::exchange(column.unit, {});
+      SetUnit(unit, &column);
+      if (!polarised.mean_is_given) layout_.groups.push_back({{}, {polarised.columns[k]}, polarised.states[k]});
+    }
+    if (layout_.groups.empty()) return false;
+    if (std::any_of(columns_.begin(), columns_.end(),
+                    [](const CsvColumn& column) { return column.role == ColumnRole::kPolarisation; }))
+      Fail("polarisations stand in a column and in the names of others; choose one with --value-column");
+    layout_.channels.names = {"Y"};
+    measurement_->conventions["value-column"] =
+        "one for each polarisation: " + std::to_string(layout_.groups.size()) + " columns";
     return true;
   }
 
@@ -239,11 +252,11 @@ class LayoutBuilder {
       }
       if (!candidates.empty())
         Fail("several columns can be the value: " + Excerpt(Join(names), 200) + "; choose one with --value-column");
-      const std::size_t other = FindOther();
-      if (other != kNoColumn) {
+      const std::size_t other = FindPossibleValue(columns_);
+      if (other < columns_.size()) {
         Fail("the column " + Quoted(columns_[other]) +
-             " can be f_r or pi f_r, or something else; say it with --value-column " + Excerpt(columns_[other].name) +
-             " and --value-kind f|pi-f");
+             " can be f_r, pi f_r, f_r times a cosine or something else; say it with --value-column \"" +
+             Excerpt(columns_[other].name) + "\" and --value-kind f|pi-f|f-cos-o|f-cos-i");
       }
       Fail("no column holds values; allowed: " + AllowedColumns() + "; or choose one with --value-column");
     }
@@ -254,13 +267,6 @@ class LayoutBuilder {
       if (column.wavelength_nm > 0) layout_.channels.wavelengths_nm.push_back(column.wavelength_nm);
     }
     if (candidates[0].size() == 1) measurement_->conventions["value-column"] = columns_[candidates[0][0]].name;
-  }
-
-  std::size_t FindOther() const {
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (columns_[i].role == ColumnRole::kOtherValue && SplitName(columns_[i].name).words.size() < 3) return i;
-    }
-    return kNoColumn;
   }
 
   // The unit of a column that does not say it: what all of the first rows can be.
@@ -408,6 +414,9 @@ class LayoutBuilder {
       layout_.value_kind = *column.value_kind;
       origin = "column name";
     }
+    const bool percent = column.value_scale && column.value_scale->factor == 0.01;
+    if (origin == "default" && column.role == ColumnRole::kChannel && percent)
+      Fail("the column " + Quoted(column) + " in percent can be f_r or pi f_r; say it with --value-kind f|pi-f");
     measurement_->conventions["value-kind"] = std::string(Name(layout_.value_kind)) + " (" + origin + ")";
     SetValueScale(column);
   }

@@ -14,11 +14,12 @@ namespace lobefit {
 
 inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
-// Columns of values that share their directions: all of them, or those at one angle of a table that has a column for
-// each angle.
+// Columns of values that share their directions: all of them, those at one angle of a table that has a column for
+// each angle, or that of one polarisation.
 struct ValueGroup {
   std::vector<std::pair<Coordinate, double>> fixed;
   std::vector<std::size_t> values;
+  std::string polarisation = {};  // empty: a column of the row says it, or nothing does
 };
 
 // A column of which only rows with this text are used.

@@ -38,6 +38,9 @@ bool IsViewerWord(std::string_view word);
 // Whether the words, joined, name a value; its kind goes to `kind`.
 bool NamesValue(const std::string& joined, std::optional<ValueKind>* kind);
 bool ClassifyValue(const NameWords& name, CsvColumn* column);
+// The first column whose name speaks of a value without saying which ("reflectance", "BRDF_raw"); the number of columns
+// where there is none.
+std::size_t FindPossibleValue(const std::vector<CsvColumn>& columns);
 // "U (k=2)", "2 sigma", "relative uncertainty", "u_rel": how far a number of uncertainty is from a standard deviation.
 bool ClassifySpread(const NameWords& name, CsvColumn* column);
 // A channel by its letter, colour or wavelength: "R", "550nm", "lambda=550".

@@ -13,16 +13,17 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/distinctions.h"
+#include "lobefit/io/csv/head_lines.h"
 #include "lobefit/io/csv/header.h"
 #include "lobefit/io/csv/layout.h"
 #include "lobefit/io/csv/mark_tally.h"
 #include "lobefit/io/csv/row_parser.h"
+#include "lobefit/io/csv/row_polarisations.h"
 #include "lobefit/io/csv/stated_angles.h"
 #include "lobefit/io/csv/wavelengths.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/measurement/noise.h"
-#include "lobefit/measurement/polarisation.h"
 #include "lobefit/measurement/repeats.h"
 
 namespace lobefit {
@@ -75,6 +76,7 @@ class CsvReader {
                                  std::to_string(gathered.channels.size()) + " channel" +
                                  (gathered.channels.size() == 1 ? "" : "s"));
       }
+      gathered.left_out = std::move(builder.measurement().left_out);
       builder.measurement() = std::move(gathered);
     }
     return Finish(&builder);
@@ -106,7 +108,10 @@ class CsvReader {
   }
 
   Measurement Finish(MeasurementBuilder* builder) {
-    if (!polarisations_.empty()) WithPath([&] { AveragePolarisations(&builder->measurement()); });
+    WithPath([&] {
+      const std::string remark = polarisations_.Average(&builder->measurement());
+      if (!remark.empty()) notes_.remarks.push_back(remark);
+    });
     Samples& rows = builder->measurement().samples;
     if (repeated_ == RepeatedRows::kMean) {
       // The spread of the repetitions stands for the stated uncertainty.
@@ -137,6 +142,7 @@ class CsvReader {
     StateTurn(&measurement.samples);
     if (!header_.keys.exclude.empty()) measurement.conventions["exclude"] = header_.keys.exclude;
     measurement.remarks = std::move(notes_.remarks);
+    measurement.comments = std::move(header_.comments);
     measurement.isotropic = layout_.directions.IsIsotropic();
     for (std::string& remark : FindImplausibleAngles(StateAngles(), rows_))
       measurement.remarks.push_back(std::move(remark));
@@ -164,7 +170,7 @@ class CsvReader {
       if (number < header_.first_data_line || line.empty()) continue;
       const bool may_be_special = line[0] <= '/';  // blank, tab, '#', '%' or "//"
       if (may_be_special && (Trim(line).empty() || IsComment(line))) {
-        if (line[0] != '-' && IsComment(line)) ReadKeyAmidRows(number, CommentText(line), {});
+        if (line[0] != '-' && IsComment(line)) TakeComment(number, CommentText(line));
         continue;
       }
       if (builder->measurement().samples.origin.capacity() == 0) Reserve(line.size(), builder);
@@ -191,14 +197,22 @@ class CsvReader {
 
   // The names again, where files were joined; a key of the rows that follow; else a footer, unless rows come after it.
   void TakeWords(std::string_view line, std::size_t number, const RowParser& parser) {
-    if (Trim(line) == Trim(header_.names)) return;
     std::vector<std::string_view> fields;
     SplitCsvLine(line, header_.separator, &fields);
-    if (AreNamesAgain(fields) || ReadKeyAmidRows(number, {}, fields)) return;
+    if (Trim(line) == Trim(header_.names) || AreNamesAgain(fields)) {
+      // What stands above names is the head of a page.
+      words_message_.clear();
+      words_ = 0;
+      return;
+    }
+    if (ReadKeyAmidRows(number, {}, fields)) return;
     ++words_;
-    if (!words_message_.empty()) return;
+    const bool names = NamesADirection(Classify(fields));
+    if (!words_message_.empty() && !names) return;
     words_line_ = number;
-    words_message_ = parser.WordsMessage();
+    words_message_ = names ? "names other columns than line " + std::to_string(header_.names_line) +
+                                 ", or in another order or unit; put each table into a file of its own"
+                           : parser.WordsMessage();
     words_text_ = Excerpt(Trim(line));
   }
 
@@ -216,6 +230,12 @@ class CsvReader {
       if (!same) return false;
     }
     return true;
+  }
+
+  void TakeComment(std::size_t number, std::string_view text) {
+    constexpr std::size_t kMostComments = 10000;
+    if (!ReadKeyAmidRows(number, text, {}) && !text.empty() && header_.comments.size() < kMostComments)
+      header_.comments.emplace_back(PlainComment(text));
   }
 
   bool ReadKeyAmidRows(std::size_t number, std::string_view comment, const std::vector<std::string_view>& fields) {
@@ -305,6 +325,7 @@ class CsvReader {
     }
     if (!any && !row.marks().empty()) {
       builder->Skip(SetAsideReason::kHole);
+      builder->measurement().LeaveOut(Normalized(wi), Normalized(wo), LeftOutReason::kNoValue);
       return;
     }
     double weight = 1;
@@ -313,20 +334,19 @@ class CsvReader {
       return;
     }
     if (by_wavelength_) {
-      AddWavelength(row, {wi, wo, 0, values_[0], weight, line}, builder);
+      AddWavelength(row, group, {wi, wo, 0, values_[0], weight, line}, builder);
     } else if (builder->Add(wi, wo, values_.data(), line)) {
       if (HasWeights()) builder->measurement().samples.weight.push_back(weight);
-      if (!layout_.polarisations.empty()) polarisations_.push_back(NumberOfPolarisation(row));
+      if (polarisations_.any()) polarisations_.Add(row, group);
     }
   }
 
-  void AddWavelength(const RowParser& row, WavelengthTable::Row sample, MeasurementBuilder* builder) {
-    if (!layout_.polarisations.empty() && NumberOfPolarisation(row) > 0) {
-      const std::size_t column = layout_.polarisations[0];
+  void AddWavelength(const RowParser& row, const ValueGroup& group, WavelengthTable::Row sample,
+                     MeasurementBuilder* builder) {
+    if (polarisations_.any() && polarisations_.NumberOf(row, group) > 0) {
       FailAtLine(
           file_, sample.line,
-          "rows with a wavelength of their own differ in polarisation too; choose one with --where, as in --where " +
-              Excerpt(header_.columns[column].name) + "=" + Excerpt(row.Text(column)));
+          "rows with a wavelength of their own differ in polarisation too; choose one with " + polarisations_.Choice());
     }
     if (layout_.wavelength == kNoColumn) {
       sample.nm = *header_.keys.wavelength_nm;
@@ -381,12 +401,17 @@ class CsvReader {
   double StandardDeviation(const CsvColumn& column, double number, double value) const {
     number = (column.variance ? std::sqrt(number) : number) / column.coverage_factor;
     const bool percent = column.unit == "%" || column.unit == "percent";
+    const double unit = percent ? 0.01 : column.unit == "ppm" ? 1e-6 : 1;
     const bool in_units_of_value =
         percent && layout_.value_scale.factor == 0.01 && ToLower(column.name).find("rel") == std::string::npos;
-    if (column.relative && !in_units_of_value)
-      return (percent ? 0.01 : 1) * number * std::fabs(layout_.value_scale.Apply(value));
+    if (column.relative && !in_units_of_value) return unit * number * std::fabs(layout_.value_scale.Apply(value));
     const std::optional<ValueScale> own =
         column.unit.empty() || in_units_of_value ? std::nullopt : ParseValueScale(column.unit);
+    // Decibels are a ratio, whatever the values are in.
+    if (own && own->form != ValueScale::Form::kLinear) {
+      const double brdf = layout_.value_scale.Apply(value);
+      return std::fabs(brdf) * own->Slope(0) * number;
+    }
     if (own && own->form == ValueScale::Form::kLinear && layout_.value_scale.form == ValueScale::Form::kLinear)
       return own->factor * number;
     return std::fabs(layout_.value_scale.Slope(value)) * number;
@@ -409,29 +434,6 @@ class CsvReader {
     for (double& s : *sigma) {
       if (std::isnan(s)) s = known[known.size() / 2];
     }
-  }
-
-  // Of the light and of the viewer together, where the row has both.
-  std::uint8_t NumberOfPolarisation(const RowParser& row) {
-    std::string word;
-    for (const std::size_t column : layout_.polarisations)
-      word += (word.empty() ? "" : " ") + ToLower(Trim(row.Text(column)));
-    for (std::size_t i = 0; i < polarisation_names_.size(); ++i) {
-      if (polarisation_names_[i] == word) return static_cast<std::uint8_t>(i);
-    }
-    if (polarisation_names_.empty()) first_polarisation_ = std::string(Trim(row.Text(layout_.polarisations[0])));
-    if (polarisation_names_.size() >= 200)
-      FailAtLine(file_, header_.names_line,
-                 "the column of polarisations holds more than 200 different words; choose one with --where");
-    polarisation_names_.push_back(word);
-    return static_cast<std::uint8_t>(polarisation_names_.size() - 1);
-  }
-
-  void AveragePolarisations(Measurement* measurement) {
-    const std::string column = Excerpt(header_.columns[layout_.polarisations[0]].name);
-    const std::string remark = AverageOverPolarisation(polarisations_, polarisation_names_, measurement);
-    if (!remark.empty())
-      notes_.remarks.push_back(remark + "; --where " + column + "=" + Excerpt(first_polarisation_) + " chooses one");
   }
 
   // For the check of conventions: how far the angles reach, whatever directions they gave.
@@ -468,9 +470,7 @@ class CsvReader {
   MarkTally marks_;
   std::size_t rows_ = 0, words_ = 0, words_line_ = 0;
   std::string words_message_, words_text_;
-  std::vector<std::uint8_t> polarisations_;  // one a sample
-  std::vector<std::string> polarisation_names_;
-  std::string first_polarisation_;
+  RowPolarisations polarisations_{header_, layout_};
 };
 
 }  // namespace

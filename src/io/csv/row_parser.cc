@@ -183,12 +183,18 @@ std::string RowParser::FieldMessage(std::size_t column, std::string_view field) 
   std::string what = "column " + std::to_string(column + 1) + " (" + Excerpt(header_.columns[column].name) + ") ";
   if (Trim(field).empty()) return what + "is empty; write a number, or nan for a value that was not measured";
   what += "is '" + Excerpt(Trim(field)) + "', which is not a number";
-  if (field.find(',') != std::string_view::npos && field.find('.') != std::string_view::npos) {
+  const bool digits = field.find_first_of("0123456789") != std::string_view::npos;
+  const bool apart = digits && (field.find('\'') != std::string_view::npos || field.find("\xc2\xa0") != field.npos ||
+                                field.find("\xe2\x80\xaf") != field.npos || field.find("\xe2\x80\x99") != field.npos);
+  const bool point_and_comma = field.find(',') != std::string_view::npos && field.find('.') != std::string_view::npos;
+  if (apart || point_and_comma) {
     what += "; write numbers without separators between thousands";
   } else if (field.find(',') != std::string_view::npos) {
     what += "; write a decimal point instead of a comma";
   } else if (Trim(field).ends_with('%')) {
     what += "; take the percent signs off and write the unit into the name, as in 'brdf [%]'";
+  } else if (!digits && (needed_[column] & kMayLack) != 0) {
+    what += "; if it stands for no value, use --no-value \"" + Excerpt(Trim(field)) + "\"";
   }
   return what;
 }

@@ -14,16 +14,18 @@ namespace {
 constexpr std::array<std::string_view, 19> kFillers = {
     "of",      "the", "de",       "di",    "del",         "der",         "des",   "la",     "a",   "mean",
     "average", "avg", "measured", "total", "unpolarized", "unpolarised", "value", "values", "from"};
-constexpr std::array<std::string_view, 19> kSpread = {
-    "sigma",         "std",    "stdev",        "stddev",      "sd",         "sem",           "uncertainty",
-    "uncertainties", "unc",    "unsicherheit", "incertitude", "incertezza", "incertidumbre", "error",
-    "err",           "fehler", "erreur",       "deviation",   "u"};
+constexpr std::array<std::string_view, 22> kSpread = {
+    "sigma",       "std",         "stdev",         "stddev", "sd",
+    "sem",         "uncertainty", "uncertainties", "unc",    "unsicherheit",
+    "incertitude", "incertezza",  "incertidumbre", "error",  "err",
+    "fehler",      "erreur",      "deviation",     "u",      "stderr",
+    "sdev",        "rsd"};
 
 struct ValueName {
   std::string_view name;
   std::optional<ValueKind> kind;
 };
-constexpr std::array<ValueName, 54> kValues = {{
+constexpr std::array<ValueName, 55> kValues = {{
     {"value", {}},
     {"values", {}},
     {"val", {}},
@@ -40,6 +42,7 @@ constexpr std::array<ValueName, 54> kValues = {{
     {"f_r11", ValueKind::kBrdf},
     {"f_r_11", ValueKind::kBrdf},
     {"fr_l_over_e", ValueKind::kBrdf},
+    {"luminance_coefficient", ValueKind::kBrdf},
     {"fdrb", ValueKind::kBrdf},
     {"frdb", ValueKind::kBrdf},
     {"bidirectional_reflectance_distribution_function", ValueKind::kBrdf},
@@ -133,7 +136,8 @@ bool ClassifyWavelengthColumn(const NameList& words, CsvColumn* column) {
   const bool known = (words.size() <= 2 && !words.empty() && HoldsWord(kNames, words[0]) &&
                       (words.size() == 1 || words[1] == "i" || words[1] == "in" || words[1] == "incident")) ||
                      joined == "longueur_d_onde" || joined == "lunghezza_d_onda" || joined == "longitud_onda" ||
-                     joined == "comprimento_onda" || joined == "wave_length";
+                     joined == "comprimento_onda" || joined == "wave_length" ||
+                     (words.size() == 2 && IsLightWord(words[0]) && HoldsWord(kNames, words[1]));
   const bool number = joined == "wavenumber" || joined == "wellenzahl";
   // What is said in THz or eV; without a unit it may be the frequency of a chopper.
   const bool inverse =
@@ -175,7 +179,7 @@ bool ClassifySpread(const NameWords& name, CsvColumn* column) {
   // "U_BRDF" is the expanded one beside "u_BRDF", as the GUM writes them.
   const bool letter =
       column->name.size() > 1 && column->name[0] == 'U' && (column->name[1] == '_' || column->name[1] == ' ');
-  bool spread = false, expanded = name.function == "U" || letter,
+  bool spread = Joined(name.words) == "s_d", expanded = name.function == "U" || letter,
        standard = name.function == "u" || name.function == "s";
   for (std::size_t i = 0; i < name.words.size(); ++i) {
     const std::string& word = name.words[i];
@@ -183,6 +187,7 @@ bool ClassifySpread(const NameWords& name, CsvColumn* column) {
     if (HoldsWord(kSpread, word) || word == "variance" || word == "var" || word == "ubrdf" || word == "ubsdf") {
       spread = true;
       column->variance = column->variance || word == "variance" || word == "var";
+      column->relative = column->relative || word == "rsd";
     } else if (word == "relative" || word == "rel" || word == "cv") {
       column->relative = true;
       spread = spread || word == "cv";
@@ -198,7 +203,8 @@ bool ClassifySpread(const NameWords& name, CsvColumn* column) {
     } else if ((word == "2sigma" || word == "3sigma")) {
       column->coverage_factor = word[0] - '0';
       spread = true;
-    } else if (word == "standard" || word == "combined" || word == "c" || word == "typ" || HoldsWord(kFillers, word) ||
+    } else if (word == "standard" || word == "combined" || word == "c" || word == "typ" || word == "measurement" ||
+               word == "dev" || word == "bar" || word == "bars" || HoldsWord(kFillers, word) ||
                FindValue(word) != nullptr || word == "%") {
       if (word == "%") column->unit = "%";
     } else {
@@ -209,6 +215,7 @@ bool ClassifySpread(const NameWords& name, CsvColumn* column) {
   spread =
       spread || standard || HoldsWord(kFunctions, name.function) || name.function == "unc" || name.function == "stdev";
   if (!spread) return false;
+  if (Joined(rest) == "s_d") rest.clear();
   if (!rest.empty() && !(rest.size() == 2 && FindValue(Joined(rest)) != nullptr) && !ClassifyChannel(rest, column))
     return false;
   column->role = ColumnRole::kSigma;
@@ -241,7 +248,9 @@ bool ClassifyValue(const NameWords& name, CsvColumn* column) {
     column->role = ColumnRole::kValue;
     column->value_kind = ValueKind::kReflectanceCosI;
   } else if (joined == "reflectance" || joined == "reflectivity" || joined == "refl" || joined == "reflexion" ||
-             joined == "reflectances" || joined == "bdr" || joined == "scatter") {
+             joined == "reflectances" || joined == "bdr" || joined == "scatter" || joined == "brdf_cos" ||
+             joined == "bsdf_cos" || joined == "f_cos" || joined == "fr_cos" || joined == "cos_brdf" ||
+             joined == "cosine_brdf" || joined == "cosine_weighted_brdf") {
     column->role = ColumnRole::kOtherValue;
   } else {
     return false;
@@ -259,6 +268,21 @@ bool NamesValue(const std::string& joined, std::optional<ValueKind>* kind) {
   const ValueName* value = FindValue(joined);
   if (value != nullptr) *kind = value->kind;
   return value != nullptr;
+}
+
+std::size_t FindPossibleValue(const std::vector<CsvColumn>& columns) {
+  std::size_t possible = columns.size();
+  for (std::size_t i = columns.size(); i-- > 0;) {
+    const NameList words = SplitName(columns[i].name).words;
+    const bool value = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+      return word.size() > 2 && FindValue(word) != nullptr;
+    });
+    if (value && columns[i].role == ColumnRole::kUnknown) possible = i;
+  }
+  for (std::size_t i = columns.size(); i-- > 0;) {
+    if (columns[i].role == ColumnRole::kOtherValue && SplitName(columns[i].name).words.size() < 3) possible = i;
+  }
+  return possible;
 }
 
 bool ClassifyValueOfChannel(const NameList& words, CsvColumn* column) {

@@ -140,7 +140,8 @@ bool IsUnitOfAnything(std::string_view unit) {
 bool IsBracketedUnit(std::string_view text) {
   const std::string plain = PlainUnit(text);
   if (plain.empty() || IsUnitOfAnything(plain)) return true;
-  if (plain == "-" || plain == "1" || plain == "m" || plain == "a" || plain == "w" || plain == "rel") return true;
+  if (plain == "-" || plain == "1" || plain == "m" || plain == "a" || plain == "w" || plain == "rel" || plain == "ppm")
+    return true;
   return plain.find('/') != std::string::npos || plain.find('^') != std::string::npos;
 }
 
@@ -265,6 +266,12 @@ NameWords SplitName(std::string_view name) {
     if (kept) word += c;
   }
   AppendWord(word, &split);
+  // "brdfPerSr"
+  if (split.unit.empty() && split.words.size() > 2 && split.words.back() == "sr" &&
+      split.words[split.words.size() - 2] == "per") {
+    split.unit = "1/sr";
+    split.words.resize(split.words.size() - 2);
+  }
   if (split.unit.empty() && split.words.size() > 1 && IsUnitOfAnything(split.words.back())) {
     split.unit = PlainUnit(split.words.back());
     split.words.pop_back();

@@ -3,11 +3,34 @@
 #include <charconv>
 #include <ostream>
 
+#include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/keys.h"
+#include "lobefit/io/csv/lines.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {
+namespace {
+
+// Whether the reader would take the comment of another file for a key of this one.
+bool IsKey(const std::string& comment) {
+  CsvKeys keys;
+  try {
+    return ReadKey(InputFile{}, 0, comment, &keys);
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
+void WriteInstrument(const StatedInstrument& instrument, std::ostream& out) {
+  if (instrument.source) out << "# source: " << FormatDouble(RadiansToDegrees(*instrument.source)) << '\n';
+  if (instrument.detector) out << "# detector: " << FormatDouble(RadiansToDegrees(*instrument.detector)) << '\n';
+  if (instrument.plain_mean) out << "# mean: " << (*instrument.plain_mean ? "plain" : "flux") << '\n';
+}
+
+}  // namespace
 
 void WriteCsv(const Measurement& measurement, const std::vector<std::string>& comments,
               const std::filesystem::path& path, int digits) {
@@ -22,6 +45,11 @@ void WriteCsv(const Measurement& measurement, const std::vector<std::string>& co
   const auto degrees = [&](double radians) { return number(RadiansToDegrees(radians)); };
   WriteFileAtomically(path, [&](std::ostream& out) {
     for (const std::string& comment : comments) out << "# " << comment << '\n';
+    for (const std::string& comment : measurement.comments) {
+      const std::string text = Printable(comment);
+      out << "# " << (IsKey(text) ? kCommentKey : std::string_view()) << text << '\n';
+    }
+    WriteInstrument(measurement.instrument, out);
     out << "# angle-unit: deg\n# value-kind: f\n# incident: towards\n";
     out << "theta_i,phi_i,theta_o,phi_o";
     const bool mono = measurement.channels.size() == 1 && measurement.channels.wavelengths_nm.empty();

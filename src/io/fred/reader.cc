@@ -64,6 +64,7 @@ Measurement ReadFred(const InputFile& file, const ReadOptions& options) {
   const double turn = sense == IncidentSense::kPropagation ? kPi : 0;
   MeasurementBuilder builder({{"Y"}, {}});
   FormatLine format;
+  std::vector<std::string> comments;
   bool has_type = false, has_format = false, has_incidence = false;
   double to_radians = 1;
   Vec3 wi = {0, 0, 1};
@@ -71,7 +72,11 @@ Measurement ReadFred(const InputFile& file, const ReadOptions& options) {
   std::string_view line;
   while (lines.Next(&line)) {
     const std::vector<std::string_view> fields = SplitBlanks(line);
-    if (fields.empty() || fields[0].substr(0, 1) == "#" || fields[0].substr(0, 2) == "!!") continue;
+    if (fields.empty()) continue;
+    if (fields[0].starts_with('#') || fields[0].starts_with("!!")) {
+      comments.emplace_back(Trim(Trim(line).substr(fields[0].starts_with('#') ? 1 : 2)));
+      continue;
+    }
     const std::size_t at = lines.line_number();
     if (!has_type) {
       if (fields.size() != 2 || ToLower(fields[0]) != "type" || ToLower(fields[1]) != "bsdf_data") {
@@ -129,6 +134,7 @@ Measurement ReadFred(const InputFile& file, const ReadOptions& options) {
                "the file ends before its format line ('format angles=deg bsdf=value scale=1'); it may be cut off");
   }
   Measurement measurement = builder.Finish();
+  measurement.comments = std::move(comments);
   measurement.conventions["angle-unit"] = format.unit == AngleUnit::kDegrees ? "deg (header)" : "rad (header)";
   measurement.conventions["value-kind"] = "f (header)";
   measurement.conventions["incident"] = std::string(sense == IncidentSense::kPropagation ? "propagation" : "towards") +

@@ -20,6 +20,7 @@ struct Header {
   std::string kind_word;
   std::optional<double> theta, phi;  // degrees
   std::optional<double> up_phi;
+  std::vector<std::string> comments;
   bool tristimulus = false;
   std::optional<std::pair<std::string, std::size_t>> points;  // text and line of the number of rows
 };
@@ -78,6 +79,8 @@ void ReadHeaderLine(const InputFile& file, std::size_t line_number, std::string_
     header->tristimulus = name == "cie-xyz";
   } else if (key == "datapoints_in_file" && fields.size() == 2) {
     header->points = {std::string(fields[1]), line_number};
+  } else {
+    header->comments.emplace_back(Trim(key == "comment" ? line.substr(line.find(fields[0]) + fields[0].size()) : line));
   }
 }
 
@@ -136,6 +139,7 @@ bool IsMountain(std::string_view bytes) {
 Measurement ReadMountain(const InputFile& file, const ReadOptions& options) {
   Header header, part;
   std::optional<MeasurementBuilder> builder;
+  std::vector<std::string> comments;
   Header first;
   std::size_t rows = 0, transmitted = 0, part_rows = 0;
   bool in_head = true;
@@ -153,7 +157,9 @@ Measurement ReadMountain(const InputFile& file, const ReadOptions& options) {
     if (line[0] == '#') {
       if (!in_head) part = {};
       in_head = true;
+      part.comments.clear();
       ReadHeaderLine(file, at, line, &part);
+      comments.insert(comments.end(), part.comments.begin(), part.comments.end());
       continue;
     }
     if (in_head) {
@@ -205,6 +211,7 @@ Measurement ReadMountain(const InputFile& file, const ReadOptions& options) {
                    ", all on the side away from the light or the format is BTDF); only reflection can "
                    "be fitted");
   }
+  measurement.comments = std::move(comments);
   measurement.conventions["angle-unit"] = "deg (format)";
   measurement.conventions["value-kind"] = Name(*header.kind) + " (header)";
   measurement.conventions["incident"] = "towards (format)";

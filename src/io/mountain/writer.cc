@@ -5,6 +5,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
@@ -53,6 +54,7 @@ std::vector<std::filesystem::path> WriteMountain(const Measurement& measurement,
     std::size_t rows = 0;
     for (const std::uint32_t of : incidences.group) rows += of == group ? 1 : 0;
     WriteFileAtomically(file, [&](std::ostream& out) {
+      for (const std::string& comment : measurement.comments) out << "#comment " << Printable(comment) << '\n';
       out << "#sample_name \"" << measurement.source << "\"\n#format: theta phi BRDF\n#intheta " << theta << "\n#inphi "
           << phi << "\n#upphi 90\n#colorimetry: " << columns.colorimetry << "\n#datapoints_in_file: " << rows << '\n';
       for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "lobefit/io/rgl/angles.h"
+#include "lobefit/io/rgl/azimuth_spread.h"
 #include "lobefit/io/rgl/tables.h"
 #include "lobefit/io/rgl/warp.h"
 #include "lobefit/io/text/place.h"
@@ -201,6 +202,17 @@ Measurement ReadRgl(const InputFile& file, const ReadOptions&) {
         "where the half vector is the normal, the rows of a slice are one pair of directions: "
         "their mean is taken (" +
         std::to_string(at_normal) + " more values)");
+  }
+  if (isotropic) {
+    const AzimuthSpread spread = SpreadAtNormal(RglBrdf(file.path, file.bytes));
+    if (spread.ratio > kAnisotropicSpread) {
+      measurement.remarks.push_back(
+          "isotropic by its format, but under a viewer at the normal f_r varies with the "
+          "azimuth of the light, by a factor of " +
+          FormatDouble(std::round(100 * spread.ratio) / 100) + " (most about azimuth " +
+          FormatDouble(std::round(RadiansToDegrees(spread.largest))) +
+          " degrees): the sample is anisotropic, and is fitted as such");
+    }
   }
   if (reduction > 1) {
     measurement.conventions["rgl-reduction"] = std::to_string(reduction);

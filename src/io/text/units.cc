@@ -113,9 +113,11 @@ std::optional<double> Factor(std::string_view unit, std::string_view* rest) {
 }  // namespace
 
 bool IsPerSteradian(std::string_view unit) {
-  static constexpr std::array<std::string_view, 15> kSpellings = {
-      "1/sr",    "/sr",   "sr^-1",       "sr-1",         "sr^(-1)",      "sr**-1",           "persr",    "1/ster",
-      "ster^-1", "invsr", "1/steradian", "persteradian", "steradian^-1", "inversesteradian", "inversesr"};
+  // Of a luminance coefficient cd m^-2 lx^-1, which is the same.
+  static constexpr std::array<std::string_view, 19> kSpellings = {
+      "1/sr",      "/sr",      "sr^-1",     "sr-1",        "sr^(-1)",      "sr**-1",       "persr",
+      "1/ster",    "ster^-1",  "invsr",     "1/steradian", "persteradian", "steradian^-1", "inversesteradian",
+      "inversesr", "cd/m2/lx", "cd/m^2/lx", "cd/(m2*lx)",  "cd*m^-2*lx^-1"};
   return std::find(kSpellings.begin(), kSpellings.end(), unit) != kSpellings.end();
 }
 

@@ -14,6 +14,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include "lobefit/fit/inference/file_clusters.h"
 #include "lobefit/measurement/incidence.h"
 
 namespace lobefit {
@@ -198,6 +199,65 @@ TEST_P(EveryResidual, ErrorsAreTheTextbooks) {
       EXPECT_LT(freedom, 5) << i;
     }
   }
+}
+
+Incidences GroupsOf(const std::vector<std::uint32_t>& group) {
+  return {std::vector<Vec3>(*std::max_element(group.begin(), group.end()) + 1U), group};
+}
+
+// Files in which whole incidences lie, and files that share them, against the textbook's sums over each.
+TEST(ErrorsByFile, AreTheTextbooksOneWayAndTwo) {
+  const Measurement measurement = SixtySamples();
+  const Samples& samples = measurement.samples;
+  const Recipe recipe = DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "test");
+  const Layout layout(recipe, measurement.channels.names);
+  const Problem problem(samples, recipe);
+  const Incidences incidences = GroupByIncidence(measurement);
+  std::vector<double> u = layout.FromShapes({{0.32, 0.13, 0.07, -0.03, -0.3}});
+  for (std::size_t c = 0; c < 3; ++c) {
+    u[5 + c] = 0.65 - 0.1 * static_cast<double>(c);
+    u[8 + c] = 0.1 - 0.03 * static_cast<double>(c);
+  }
+  ThreadPool pool(2);
+  const Matrix jacobian = layout.ReportJacobian(u.data());
+  const auto variances = [&](const Incidences& groups) {
+    const Matrix cr2 = EvaluateTextbook(recipe, layout, samples, groups, u, jacobian).cr2;
+    return Vector((jacobian * cr2 * jacobian.transpose()).diagonal());
+  };
+  std::vector<std::uint32_t> nested, crossed, both, within;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::uint32_t incidence = incidences.group[i];
+    nested.push_back(incidence / 2);
+    crossed.push_back(static_cast<std::uint32_t>(i % 4));
+    both.push_back(4 * incidence + crossed.back());
+    within.push_back(2 * incidence + static_cast<std::uint32_t>(i % 2));
+  }
+  const auto by_file = [&](const std::vector<std::uint32_t>& files) {
+    return EstimateErrorsByFile(problem, layout, u, incidences, files, &pool);
+  };
+  const FileErrors one_way = by_file(nested), two_ways = by_file(crossed);
+  const Vector of_nested = variances(GroupsOf(nested)), of_crossed = variances(GroupsOf(crossed)),
+               of_both = variances(GroupsOf(both)), of_incidences = variances(incidences);
+  const Vector freedom =
+      EvaluateTextbook(recipe, layout, samples, GroupsOf(crossed), u, jacobian)
+          .freedom.cwiseMin(EvaluateTextbook(recipe, layout, samples, incidences, u, jacobian).freedom);
+  ASSERT_EQ(one_way.variance.size(), static_cast<std::size_t>(kSize));
+  int sums = 0;
+  for (Eigen::Index k = 0; k < kSize; ++k) {
+    const auto entry = static_cast<std::size_t>(k);
+    EXPECT_NEAR(one_way.variance[entry], of_nested(k), 1e-9 * of_nested(k)) << k;
+    const double sum = of_crossed(k) + of_incidences(k) - of_both(k);
+    const double expected = std::max({sum, of_crossed(k), of_incidences(k)});
+    sums += expected == sum ? 1 : 0;
+    EXPECT_NEAR(two_ways.variance[entry], expected, 1e-9 * expected) << k;
+    EXPECT_NEAR(two_ways.freedom[entry], freedom(k), 1e-8 * freedom(k)) << k;
+  }
+  EXPECT_GT(sums, 0) << "the sum of both ways is tried";
+  // Files that say nothing that incidences do not.
+  EXPECT_TRUE(by_file({}).variance.empty());
+  EXPECT_TRUE(by_file(std::vector<std::uint32_t>(samples.size(), 3)).variance.empty());
+  EXPECT_TRUE(by_file(incidences.group).variance.empty());
+  EXPECT_TRUE(by_file(within).variance.empty());
 }
 
 std::string NameOfCase(const testing::TestParamInfo<EveryResidual::ParamType>& info) {

@@ -115,5 +115,55 @@ TEST(CsvKeys, ASentenceMayStateTheUnit) {
   }
 }
 
+// What a head states of the light in its own words.
+TEST(CsvKeys, AnglesAndWavelengthsInPhrases) {
+  for (const char* line : {"# theta_i=30, phi_i=90", "# incident zenith: 30 deg, azimuth: 90 deg",
+                           "# incident zenith = 30; incident azimuth = 90", "Scan 1, phi_i 90 deg\nAOI 30 deg"}) {
+    const Measurement m = ReadText(std::string(line) + "\ntheta_o,phi_o,f\n45,270,2\n");
+    ASSERT_EQ(m.samples.size(), 1U) << line;
+    ExpectSample(m, 0, 30, 90, 45, 270, 2);
+  }
+  const Measurement laser = ReadText("# Laser wavelength 632.8 nm\n# Incidence angle 30 deg.\ntheta_o,f\n45,2\n");
+  ExpectSample(laser, 0, 30, 0, 45, 180, 2);
+  EXPECT_EQ(laser.channels.wavelengths_nm, (std::vector<double>{632.8}));
+  const Measurement blocks =
+      ReadText("Scan 1, incidence 10 deg\ntheta_o,f\n45,1\nScan 2, incidence 30 deg\ntheta_o,f\n45,2\n");
+  ASSERT_EQ(blocks.samples.size(), 2U);
+  ExpectSample(blocks, 1, 30, 0, 45, 180, 2);
+  // A list is no angle of the file.
+  EXPECT_NE(MessageOf("# angle of incidence 10 20 30\ntheta_o,f\n45,2\n").find("'# theta_i: 30'"), std::string::npos);
+  EXPECT_NE(MessageOf("# incident direction: 30, 90\ntheta_o,f\n45,2\n").find("'# theta_i: 30'"), std::string::npos);
+}
+
+TEST(CsvKeys, UnitsInLists) {
+  for (const char* line : {"# Units: rad, 1e-2/sr", "# unit of theta_i: rad\n# BRDF unit: 1e-2/sr",
+                           "# Winkel: rad\n# BRDF values given in %", "# angles in radians\n# values in %"}) {
+    const Measurement m =
+        ReadText(std::string(line) + "\ntheta_i,theta_o,f\n0.5235987755982988,0.7853981633974483,50\n");
+    ExpectSample(m, 0, 30, 0, 45, 180, 0.5);
+  }
+  EXPECT_TRUE(HasRemark(ReadText("# Units: rad, furlongs\n" + kRows), "is not known and was not used"));
+  EXPECT_TRUE(HasRemark(ReadText("# scale factor: 0.01\n" + kRows), "is not known and was not used"));
+}
+
+TEST(CsvKeys, WhatIsStatedAndNotUsedIsSaid) {
+  EXPECT_TRUE(HasRemark(ReadText("# Polarization: s\n" + kRows), "line 1: the polarisation is 's'"));
+  EXPECT_FALSE(HasRemark(ReadText("# Polarization: unpolarised\n" + kRows), "the polarisation is"));
+  EXPECT_TRUE(HasRemark(ReadText("# relative uncertainty: 5 % (k=2)\n" + kRows), "for all values was not used"));
+}
+
+TEST(Units, UncertaintiesInDecibelsAndParts) {
+  const auto sigma = [](const std::string& name, const char* number) {
+    return ReadText("theta_i,theta_o,f," + name + "\n10,20,0.5," + number + "\n").samples.sigma.at(0);
+  };
+  EXPECT_NEAR(sigma("uncertainty (dB)", "0.2"), 0.5 * 0.2 * std::log(10) / 10, 1e-12);
+  EXPECT_NEAR(sigma("sigma [rel]", "0.1"), 0.05, 1e-12);
+  EXPECT_NEAR(sigma("sigma_rel [ppm]", "1000"), 0.0005, 1e-12);
+  for (const char* name : {"std dev", "stderr", "error bar", "s.d.", "measurement uncertainty", "BRDF err"})
+    EXPECT_NEAR(sigma(name, "0.1"), 0.1, 1e-12) << name;
+  EXPECT_NEAR(sigma("std dev (%)", "10"), 0.05, 1e-12);
+  EXPECT_NEAR(sigma("RSD (%)", "10"), 0.05, 1e-12);
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -79,6 +79,40 @@ TEST(CsvLayouts, VectorsAndHalfAngles) {
   EXPECT_TRUE(relative.isotropic);
 }
 
+TEST(CsvLayouts, NamesThatReadInTwoWaysAreAsked) {
+  EXPECT_NE(MessageOf("theta_i [0.1 deg],theta_r [0.1 deg],BRDF\n100,200,1\n")
+                .find("holds values at one angle, by its name, "
+                      "but 'BRDF' holds values too"),
+            std::string::npos);
+  EXPECT_NE(MessageOf("theta_s,AOI=0.2 rad,AOI=30 deg\n10,1,2\n").find("have different units"), std::string::npos);
+  EXPECT_NE(MessageOf("theta_i,theta_r,BRDF_raw,BRDF_corrected\n10,20,1,2\n").find("--value-column \"BRDF_raw\""),
+            std::string::npos);
+  EXPECT_NE(MessageOf("AOI: 30\nAzimuth: 90\ntheta_s,BSDF\n10,1\n").find("the head states 'Azimuth: 90', which"),
+            std::string::npos);
+  EXPECT_EQ(ReadText("AOI: 30\nAzimuth: 90\ntheta_s,phi_s,BSDF\n10,20,1\n").samples.size(), 1U);
+}
+
+TEST(CsvLayouts, UnitsOfChannels) {
+  ReadOptions brdf;
+  brdf.value_kind = ValueKind::kBrdf;
+  const Measurement rgb = ReadText("theta_i,theta_o,R (%),G (%),B (%)\n10,20,50,40,30\n", brdf);
+  EXPECT_DOUBLE_EQ(rgb.samples.values[2][0], 0.3);
+  EXPECT_DOUBLE_EQ(ReadText("# value-kind: f\ntheta_i,theta_o,Y [%]\n10,20,50\n").samples.values[0][0], 0.5);
+  EXPECT_NE(MessageOf("theta_i,theta_o,Y [%]\n10,20,50\n").find("'Y [%]' in percent can be f_r or pi f_r"),
+            std::string::npos);
+  const Measurement spectral = ReadText("theta_i;theta_o;450 nm;550nm\ndeg;deg;%;%\n10;20;50;40\n", brdf);
+  EXPECT_DOUBLE_EQ(spectral.samples.values[1][0], 0.4);
+  EXPECT_EQ(spectral.channels.wavelengths_nm, (std::vector<double>{450, 550}));
+  EXPECT_NE(MessageOf("theta_i;theta_o;450 nm\ndeg;deg;furlong\n10;20;50\n").find("has the unit 'furlong'"),
+            std::string::npos);
+}
+
+TEST(CsvLayouts, AnAngleOfADirectionByItsUnit) {
+  ExpectTheTwo(ReadText("AOI (deg),observation (deg),BRDF\n30,-20,0.5\n30,45,0.25\n"));
+  ExpectTheTwo(ReadText("theta_src,theta_rcv,brdfPerSr\n30,-20,0.5\n30,45,0.25\n"));
+  EXPECT_NE(MessageOf("AOI,observation,BRDF\n30,-20,0.5\n").find("polar angle of the viewer"), std::string::npos);
+}
+
 TEST(CsvLayouts, ALonePhiIsTheRelativeAzimuth) {
   const Measurement m = ReadText("theta_i,theta_r,phi,brdf\n30,30,180,5\n30,30,0,0.1\n");
   ExpectSample(m, 0, 30, 0, 30, 180, 5);  // the mirror direction
@@ -177,13 +211,25 @@ TEST(CsvLayouts, PolarisationOfTheLightAndOfTheViewer) {
   EXPECT_EQ(ReadText("wavelength (nm),theta_i,theta_o,pol,brdf\n550,10,20,u,1\n650,10,20,u,2\n").channels.size(), 2U);
 }
 
-TEST(CsvLayouts, TwoPolarisationsInColumnsAreAsked) {
-  for (const char* names : {"BRDF_s,BRDF_p", "f_s,f_p"}) {
-    const std::string text = "theta_i,theta_o,dphi," + std::string(names) + "\n10,20,0,1,2\n";
-    EXPECT_NE(MessageOf(text).find("are two polarisations; choose one with --value-column"), std::string::npos)
-        << names;
+TEST(CsvLayouts, PolarisationsInColumns) {
+  for (const char* names : {"BRDF_s,BRDF_p", "f_s,f_p", "f_TE,f_TM", "BRDF_s (1/sr),BRDF_p (1/sr)"}) {
+    const Measurement m = ReadText("theta_i,theta_o,dphi," + std::string(names) + "\n10,20,0,1,2\n10,30,0,3,-\n");
+    ASSERT_EQ(m.samples.size(), 1U) << names;
+    EXPECT_EQ(m.samples.values[0][0], 1.5) << names;
+    EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 2U) << "one without a value, and its fellow";
+    EXPECT_TRUE(HasRemark(m, "were averaged to f_r of unpolarised light; --value-column ")) << names;
   }
+  const Measurement four = ReadText("theta_i,theta_o,dphi,f_ss,f_sp,f_ps,f_pp\n10,20,0,1,2,4,8\n");
+  EXPECT_EQ(four.samples.values[0][0], 7.5) << "half of the sum";
+  const Measurement mean = ReadText("theta_i,theta_o,dphi,BRDF_s,BRDF_p,BRDF_avg\n10,20,0,1,2,1.4\n");
+  EXPECT_EQ(mean.samples.values[0][0], 1.4);
+  EXPECT_TRUE(HasRemark(mean, "columns not used: BRDF_s, BRDF_p"));
+  ReadOptions options;
+  options.value_column = "BRDF_p";
+  EXPECT_EQ(ReadText("theta_i,theta_o,dphi,BRDF_s,BRDF_p\n10,20,0,1,2\n", options).samples.values[0][0], 2);
   EXPECT_EQ(ReadText("theta_i,theta_o,dphi,f_s\n10,20,0,1\n").samples.size(), 1U);
+  EXPECT_NE(MessageOf("theta_i,theta_o,dphi,pol,f_s,f_p\n10,20,0,x,1,2\n").find("stand in a column and in the names"),
+            std::string::npos);
 }
 
 TEST(CsvLayouts, AnAngleAboveOrInTheNamesOfATable) {

@@ -109,7 +109,7 @@ TEST(Spreadsheets, TheNamesAgainInAnotherSpelling) {
   EXPECT_EQ(ReadText("theta_i,theta_o,dphi,brdf\n10,20,0,1\nTheta_I, Theta_O, dPhi, BRDF\n30,20,0,1\n").samples.size(),
             2U);
   EXPECT_NE(MessageOf("theta_i,theta_o,dphi,brdf\n10,20,0,1\ntheta_o,theta_i,dphi,brdf\n30,20,0,1\n")
-                .find("line 3: column 1 (theta_i) is 'theta_o'"),
+                .find("line 3: names other columns than line 1, or in another order or unit"),
             std::string::npos);
 }
 
@@ -167,6 +167,70 @@ TEST(Spreadsheets, StandardUncertaintyBesideAnExpandedOne) {
 TEST(Spreadsheets, JsonOfAnotherKindIsSaid) {
   EXPECT_NE(MessageOf("[{\"theta_i\": 10, \"theta_o\": 20, \"brdf\": 1}]").find("is JSON of a kind that is not known"),
             std::string::npos);
+}
+
+// Names divided in another way than the rows below them.
+TEST(Spreadsheets, NamesBetweenOtherMarksThanTheNumbers) {
+  for (const char* text :
+       {"theta_i,phi_i,theta_o,phi_o,brdf\n10;20;30;40;0,5\n50;60;70;80;0,25\n",
+        "theta_i\tphi_i\ttheta_o\tphi_o\tbrdf\n10 20 30 40 0.5\n50 60 70 80 0.25\n",
+        "theta_i (deg)  phi_i (deg)  theta_o (deg)  phi_o (deg)  BRDF (1/sr)\n10 20 30 40 0.5\n50 60 70 80 0.25\n",
+        "theta_i (deg) phi_i (deg) theta_o (deg) phi_o (deg) BRDF (1/sr)\n10 20 30 40 0.5\n50 60 70 80 0.25\n",
+        "Incident angle  Incident azimuth  Scatter angle  Scatter azimuth  BRDF\n10 20 30 40 0.5\n50 60 70 80 0.25\n",
+        "theta_i phi_i theta_o phi_o brdf\n10,0 20,0 30,0 40,0 0,5\n50,0 60,0 70,0 80,0 0,25\n"}) {
+    SCOPED_TRACE(text);
+    ExpectTheRows(ReadText(text));
+  }
+  // Blanks behind commas do not make the commas decimal ones.
+  EXPECT_NE(MessageOf("theta_i, theta_o, brdf\n10,0, 20,0, 0,5\n").find("has 6 fields"), std::string::npos);
+  ExpectTheRows(ReadText("theta_i, phi_i, theta_o, phi_o, brdf\n10, 20, 30, 40, 0.5\n50, 60, 70, 80, 0.25\n"));
+}
+
+TEST(Spreadsheets, UnitsAboveTheNamesAndUnitsThatAreNotKnown) {
+  const Measurement m = ReadText("rad;rad;1/sr\ntheta_i;theta_o;f\n0.5235987755982988;0.7853981633974483;2\n");
+  ExpectSample(m, 0, 30, 0, 45, 180, 2);
+  EXPECT_NE(MessageOf("theta_i;theta_o;f\nturns;turns;1/sr\n0.1;0.2;2\n").find("'theta_i', has the unit 'turns'"),
+            std::string::npos);
+  EXPECT_NE(MessageOf("theta_i;theta_o;f;u\ndeg;deg;1/sr;furlong\n1;2;2;1\n").find("'u', has the unit 'furlong'"),
+            std::string::npos);
+  const Measurement expanded = ReadText("theta_i;theta_o;f;U\ndeg;deg;1/sr;k=2\n10;20;2;0.2\n");
+  EXPECT_NEAR(expanded.samples.sigma[0], 0.1, 1e-12);
+}
+
+TEST(Spreadsheets, CommentsInQuotes) {
+  const Measurement m = ReadText("\"# Lab 3, room 2\";;\n\"# AOI: 30 deg\";;\ntheta_o;f;n\n45;2;1\n");
+  ExpectSample(m, 0, 30, 0, 45, 180, 2);
+  // A nameless mark for the row's number is no comment.
+  EXPECT_EQ(ReadText("\"#\",\"theta_i\",\"theta_o\",\"f\"\n1,30,45,2\n").samples.size(), 1U);
+}
+
+TEST(Spreadsheets, HeadsOfPagesAmidTheRows) {
+  const Measurement m =
+      ReadText("Page 1\ntheta_i,theta_o,f\n10,20,1\nPage 2\n-----\ntheta_i,theta_o,f\n10,30,2\nEnd\n");
+  ASSERT_EQ(m.samples.size(), 2U);
+  EXPECT_TRUE(HasRemark(m, "1 line after the last row, from line 8 on"));
+  EXPECT_NE(MessageOf("theta_i,theta_o,f\n10,20,1\nPage 2\n10,30,2\n").find("line 3: column 1 (theta_i) is 'Page 2'"),
+            std::string::npos);
+}
+
+TEST(Spreadsheets, SignsOfTypesettersAndOtherThousands) {
+  const Measurement m = ReadText(
+      "theta_i,theta_o,f\n30,\xe2\x88\x92"
+      "45,1\n30,20,\xe2\x88\x92"
+      "0.5\n");
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 0, 30, 0, 45, 0, 1);
+  EXPECT_EQ(m.samples.values[0][1], -0.5);
+  for (const char* number : {"1'234.5",
+                             "1\xc2\xa0"
+                             "234,5",
+                             "1\xe2\x80\xaf"
+                             "234,5"}) {
+    EXPECT_NE(MessageOf("theta_i;theta_o;f\n10;20;" + std::string(number) + "\n").find("separators between thousands"),
+              std::string::npos)
+        << number;
+  }
+  EXPECT_NE(MessageOf("theta_i,theta_o,f\n10,20,1\n10,30,~\n").find("use --no-value \"~\""), std::string::npos);
 }
 
 }  // namespace

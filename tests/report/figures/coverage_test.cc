@@ -1,5 +1,6 @@
 #include "lobefit/report/figures/coverage.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "tests/report/synthetic.h"
@@ -37,6 +38,22 @@ TEST(Coverage, IsotropicLightIsAtAzimuthZero) {
   const std::vector<CoverageDisc> discs = CountCoverage(measurement);
   EXPECT_EQ(discs[0].counts[PixelIndex(3 * kCells / 4, kCells / 2, kCells)], 1U);
   EXPECT_EQ(discs[1].counts[PixelIndex(kCells / 2, kCells / 4, kCells)], 1U);
+}
+
+TEST(Coverage, WhatWasLeftOutStandsInItsCellsByReason) {
+  Measurement measurement = test::Measure(test::MakeMaterial(1, false), test::GoniometerPairs(true), 0, false);
+  const Vec3 wi = test::AtDegrees(45, 0), wo = test::AtDegrees(88, 90);
+  measurement.LeaveOut(wi, wo, LeftOutReason::kNearLight);
+  for (int k = 0; k < 2; ++k) measurement.LeaveOut(wi, wo, LeftOutReason::kNoValue);
+  measurement.LeaveOut(wi, test::AtDegrees(45, 180), LeftOutReason::kNearMirror);
+  const std::vector<CoverageDisc> discs = CountCoverage(measurement);
+  EXPECT_EQ(discs[0].left_out[PixelIndex(3 * kCells / 4, kCells / 2, kCells)], LeftOutReason::kNoValue) << "the most";
+  EXPECT_EQ(discs[1].left_out[PixelIndex(kCells / 2, 0, kCells)], LeftOutReason::kNoValue);
+  EXPECT_EQ(discs[1].left_out[PixelIndex(kCells / 4, kCells / 2, kCells)], LeftOutReason::kNearMirror);
+  EXPECT_EQ(discs[2].left_out[PixelIndex(kCells / 2, kCells / 2, kCells)], LeftOutReason::kNearMirror);
+  const auto marked = std::count_if(discs[1].left_out.begin(), discs[1].left_out.end(),
+                                    [](const std::optional<LeftOutReason>& reason) { return reason.has_value(); });
+  EXPECT_EQ(marked, 2);
 }
 
 TEST(Coverage, WritesAPngAndRefusesNothing) {

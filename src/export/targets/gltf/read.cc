@@ -45,6 +45,7 @@ class GltfReader {
       Fail("holds no materials");
     }
     if (!json_["materials"][0].is_object()) Fail("the first material is not an object");
+    CheckFile();
   }
 
   GltfMaterial Read() const {
@@ -69,14 +70,14 @@ class GltfReader {
 
     GltfMaterial material;
     material.base_color = Color(pbr, "baseColorFactor", 4, {1, 1, 1});
-    material.metallic = Real(pbr, "metallicFactor", 1);
-    material.roughness.roughness = Real(pbr, "roughnessFactor", 1);
-    material.roughness.anisotropy = Real(anisotropy, "anisotropyStrength", 0);
+    material.metallic = Factor(pbr, "metallicFactor", 1);
+    material.roughness.roughness = Factor(pbr, "roughnessFactor", 1);
+    material.roughness.anisotropy = Factor(anisotropy, "anisotropyStrength", 0);
     material.rotation = Real(anisotropy, "anisotropyRotation", 0);
     material.clearcoat = Real(clearcoat, "clearcoatFactor", 0);
     material.clearcoat_roughness = Real(clearcoat, "clearcoatRoughnessFactor", 0);
     material.ior = Real(ior, "ior", 1.5);
-    material.specular = Real(specular, "specularFactor", 1);
+    material.specular = Factor(specular, "specularFactor", 1);
     material.specular_color = Color(specular, "specularColorFactor", 3, {1, 1, 1});
     if (entry.contains("normalTexture")) material.normal = NormalOf(Object(entry, "normalTexture", none));
     return material;
@@ -95,6 +96,26 @@ class GltfReader {
  private:
   [[noreturn]] void Fail(const std::string& message) const {
     throw InputError(fmt::format("{}: {}", path_.string(), message));
+  }
+
+  // What holds for the whole file.
+  void CheckFile() const {
+    const Json none = Json::object();
+    const Json& asset = Object(json_, "asset", none);
+    if (asset.contains("version") && asset["version"].is_string() &&
+        !asset["version"].get<std::string>().starts_with("2.")) {
+      Fail(fmt::format("is glTF of the version {}; 2.0 is understood", Excerpt(asset["version"].get<std::string>())));
+    }
+    const auto required = json_.find("extensionsRequired");
+    if (required == json_.end() || !required->is_array()) return;
+    const std::vector<std::string>& known = KnownMembers().at("the extensions");
+    for (const Json& extension : *required) {
+      const std::string name = extension.is_string() ? extension.get<std::string>() : "";
+      if (std::find(known.begin(), known.end(), name) == known.end()) {
+        Fail(fmt::format("requires the extension '{}', which is not understood; allowed are {}", Excerpt(name),
+                         Join(known)));
+      }
+    }
   }
 
   std::string NameOf(std::size_t material) const {
@@ -127,6 +148,12 @@ class GltfReader {
     if (found == parent.end()) return otherwise;
     if (!found->is_number()) Fail(fmt::format("member '{}' is not a number", name));
     return found->get<double>();
+  }
+  // A factor of the format, which allows 0 to 1.
+  double Factor(const Json& parent, const char* name, double otherwise) const {
+    const double factor = Real(parent, name, otherwise);
+    if (!(factor >= 0 && factor <= 1)) Fail(fmt::format("member '{}' is {}; 0 to 1 is allowed", name, factor));
+    return factor;
   }
   Color3 Color(const Json& parent, const char* name, std::size_t size, const Color3& otherwise) const {
     const auto found = parent.find(name);

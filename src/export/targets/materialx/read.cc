@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -69,8 +70,19 @@ class MaterialXReader {
   void CheckInputs(pugi::xml_node node) const {
     const std::string type = node.name();
     const std::vector<MaterialXInput>& known = MaterialXInputs().at(type);
-    for (const pugi::xml_node input : node.children("input")) {
+    const std::string_view nodedef = node.attribute("nodedef").value();
+    if (!nodedef.empty() && !nodedef.starts_with("ND_" + type))
+      xml_.Fail(node,
+                fmt::format("<{}> has a definition of its own, '{}', which is not understood", type, Excerpt(nodedef)));
+    std::set<std::string> seen;
+    for (const pugi::xml_node input : node.children()) {
+      if (input.type() != pugi::node_element) continue;
+      if (std::string_view(input.name()) != "input")
+        xml_.Fail(input, fmt::format("<{}> within <{}> is not understood; inputs are", Excerpt(input.name()), type));
       const std::string name = input.attribute("name").value();
+      if (!seen.insert(name).second)
+        xml_.Fail(input, fmt::format("the input '{}' of <{}> is given twice", Excerpt(name), type));
+      CheckConstant(input);
       const auto found =
           std::find_if(known.begin(), known.end(), [&](const MaterialXInput& one) { return name == one.name; });
       if (found == known.end()) {
@@ -85,6 +97,26 @@ class MaterialXReader {
                                                               : std::string("no constant"),
                                      found->only));
       }
+    }
+  }
+
+  // A value beside a connection is not used, and a colour may be in another space than the linear one of Rec. 709; of the
+  // elements around it the nearest says.
+  void CheckConstant(pugi::xml_node input) const {
+    if (!input.attribute("value")) return;
+    for (const char* other : {"nodename", "nodegraph", "output", "interfacename", "unit"}) {
+      if (!input.attribute(other)) continue;
+      xml_.Fail(input,
+                fmt::format("the input '{}' has a value and the attribute {}='{}', which is not understood",
+                            Excerpt(input.attribute("name").value()), other, Excerpt(input.attribute(other).value())));
+    }
+    if (!std::string_view(input.attribute("type").value()).starts_with("color")) return;
+    for (pugi::xml_node around = input; around; around = around.parent()) {
+      const std::string_view space = around.attribute("colorspace").value();
+      if (space.empty()) continue;
+      if (space == "lin_rec709" || space == "lin_rec709_scene" || space == "none") return;
+      xml_.Fail(input, fmt::format("the input '{}' is a colour in the space '{}'; only lin_rec709 is understood",
+                                   Excerpt(input.attribute("name").value()), Excerpt(space)));
     }
   }
 

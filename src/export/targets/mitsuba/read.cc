@@ -1,6 +1,7 @@
 #include "lobefit/export/targets/mitsuba/read.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 #include <set>
@@ -68,6 +69,12 @@ class MitsubaReader {
       result.remarks.emplace_back("the texture coordinates of the mesh are turned as the file's comment says");
     if (old_names_)
       result.remarks.emplace_back("names are those of scenes before version 2, as Mitsuba 3 upgrades them");
+    for (const pugi::xml_node shape : xml_.root().children("shape")) {
+      if (!shape.child("bsdf")) continue;
+      result.remarks.push_back(fmt::format(
+          "the bsdf within the shape of line {} is left out: one that stands by itself is taken", xml_.Line(shape)));
+      break;
+    }
     constexpr std::size_t kMostNamed = 20;
     for (std::size_t k = 0; k + 1 < all.size(); ++k) {
       if (k == kMostNamed) {
@@ -108,6 +115,29 @@ class MitsubaReader {
                               type, DidYouMean(name, names), names.empty() ? "nested bsdfs" : Join(names)));
       }
       if (!seen.insert(name).second) xml_.Fail(child, fmt::format("'{}' is given twice", Excerpt(name)));
+      CheckType(child, name);
+    }
+  }
+
+  // "srgb" of older scenes is not linear, and a number within <string> is none to Mitsuba.
+  void CheckType(pugi::xml_node property, const std::string& name) const {
+    static constexpr std::array<std::string_view, 4> kColors = {"rgb", "spectrum", "float", "integer"};
+    static constexpr std::array<std::string_view, 3> kWords = {"distribution", "material", "sample_visible"};
+    const std::string_view type = property.name();
+    const bool word = std::find(kWords.begin(), kWords.end(), name) != kWords.end() || name == "normalmap" ||
+                      name == "use_shadowing_function" || name == "flip_invalid_normals";
+    if (word) return;
+    if (std::find(kColors.begin(), kColors.end(), type) == kColors.end()) {
+      xml_.Fail(property,
+                fmt::format("'{}' is given by <{}>, which is not understood; constant values are, by <float>, "
+                            "<rgb> or <spectrum>",
+                            Excerpt(name), Excerpt(type)));
+    }
+    for (const pugi::xml_attribute attribute : property.attributes()) {
+      const std::string_view own = attribute.name();
+      if (own == "name" || own == "value" || own == "id") continue;
+      xml_.Fail(property, fmt::format("the attribute {}='{}' of '{}' is not understood; name and value are",
+                                      Excerpt(own), Excerpt(attribute.value()), Excerpt(name)));
     }
   }
 
@@ -209,6 +239,7 @@ class MitsubaReader {
     }
     if (wanted > 0) {
       const double second = type == "blendbsdf" ? Real(bsdf, "weight", 0.5) : 0.0;
+      if (!(second >= 0 && second <= 1)) xml_.Fail(bsdf, fmt::format("its weight is {}; 0 to 1 is allowed", second));
       Add(nested[0], weight * (1 - second), type == "normalmap" ? NormalOf(bsdf) : normal, surface);
       if (nested.size() > 1) Add(nested[1], weight * second, normal, surface);
     } else if (type == "diffuse") {
@@ -246,6 +277,8 @@ class MitsubaReader {
     SurfaceLobe lobe;
     const double alpha = Real(bsdf, "alpha", 0.1);
     lobe.widths = {std::max(1e-4, Real(bsdf, "alpha_u", alpha)), std::max(1e-4, Real(bsdf, "alpha_v", alpha))};
+    if (!(std::min({alpha, Real(bsdf, "alpha_u", alpha), Real(bsdf, "alpha_v", alpha)}) > 0))
+      xml_.Fail(bsdf, "its alpha is not above 0");
     lobe.rotation = rotation_;
     lobe.normal = normal;
     lobe.weight = weight * Real(bsdf, "specular_reflectance", 1);

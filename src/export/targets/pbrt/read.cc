@@ -62,10 +62,17 @@ class PbrtReader {
     Surface surface;
     surface.diffuse.assign(channel_count(), 0.0);
     Add(last_, 1, 0, &surface);
-    ImportedMaterial result = {"pbrt", channels_, SurfaceBrdf(surface), {}};
+    ImportedMaterial result = {"pbrt", channels_, SurfaceBrdf(surface), remarks_};
     if (rotation_ != 0)
       result.remarks.emplace_back("the texture coordinates of the mesh are turned as the file's comment says");
     for (const auto& [name, entry] : entries_) {
+      const auto reflectance = entry.parameters.find("reflectance");
+      if (reflectance != entry.parameters.end() && reflectance->second.type == "rgb" &&
+          std::any_of(reflectance->second.words.begin(), reflectance->second.words.end(),
+                      [](const std::string& word) { return ParseDouble(word).value_or(0) > 1; })) {
+        result.remarks.push_back(
+            fmt::format("the reflectance of line {} is above 1: more leaves than arrives", reflectance->second.line));
+      }
       if (used_.count(name) == 0) {
         result.remarks.push_back(fmt::format("the material '{}' of line {} is left out: the last one, '{}', is taken",
                                              Excerpt(name), entry.line, Excerpt(last_)));
@@ -86,7 +93,7 @@ class PbrtReader {
       const PbrtToken directive = tokens_[at_++];
       const bool named = directive.text == "MakeNamedMaterial", plain = directive.text == "Material";
       if (directive.quoted || (!named && !plain)) {
-        if (directive.text == "NamedMaterial" && at_ < tokens_.size()) last_ = tokens_[at_].text;
+        if (!directive.quoted && at_ < tokens_.size()) TakeOther(directive, tokens_[at_].text);
         continue;
       }
       if (at_ >= tokens_.size() || !tokens_[at_].quoted) Fail(directive.line, "a quoted name is expected here");
@@ -94,7 +101,22 @@ class PbrtReader {
       Entry entry = {Parameters(), directive.line};
       if (plain) entry.parameters["type"] = {"string", {name}, directive.line};
       last_ = plain ? fmt::format("material in line {}", directive.line) : name;
-      entries_[last_] = std::move(entry);
+      if (!entries_.emplace(last_, std::move(entry)).second)
+        Fail(directive.line, fmt::format("the material '{}' is defined twice", Excerpt(name)));
+    }
+  }
+
+  // Directives that concern the materials after them.
+  void TakeOther(const PbrtToken& directive, const std::string& word) {
+    if (directive.text == "NamedMaterial") {
+      last_ = word;
+    } else if (directive.text == "ColorSpace" && word != "srgb") {
+      Fail(directive.line, fmt::format("the colour space is '{}'; only srgb is understood", Excerpt(word)));
+    } else if (directive.text == "Attribute" && word == "material") {
+      Fail(directive.line,
+           "an Attribute for materials changes those after it and is not understood; write its parameters into them");
+    } else if (directive.text == "Include" || directive.text == "Import") {
+      remarks_.push_back(fmt::format("the file '{}' of line {} was not looked into", Excerpt(word), directive.line));
     }
   }
 
@@ -142,6 +164,10 @@ class PbrtReader {
       if (std::find(found->second.begin(), found->second.end(), value.type) == found->second.end()) {
         Fail(value.line, fmt::format("'{}' is of the type '{}'; {} is understood, a constant value", Excerpt(name),
                                      Excerpt(value.type), Join(found->second, " or ")));
+      }
+      const bool single = value.type != "rgb" && value.type != "spectrum" && name != "materials";
+      if (single && value.words.size() != 1) {
+        Fail(value.line, fmt::format("'{}' has {} values; one is allowed", Excerpt(name), value.words.size()));
       }
     }
   }
@@ -204,6 +230,9 @@ class PbrtReader {
     }
     if (value.words.size() != 3) Fail(value.line, fmt::format("{} is not three numbers", name));
     for (const std::string& word : value.words) color.push_back(Number(value, word, name));
+    for (const double part : color) {
+      if (!(part >= 0)) Fail(value.line, fmt::format("{} holds {}; 0 and more is allowed", name, part));
+    }
     return color;
   }
 
@@ -230,6 +259,7 @@ class PbrtReader {
         Fail(entry.line, "a mix needs two materials");
       }
       const double amount = Real(entry, "amount", 0.5);
+      if (!(amount >= 0 && amount <= 1)) Fail(entry.line, fmt::format("the amount is {}; 0 to 1 is allowed", amount));
       Add(materials->second.words[0], weight * (1 - amount), depth + 1, surface);
       Add(materials->second.words[1], weight * amount, depth + 1, surface);
     } else if (kind == "diffuse") {
@@ -298,6 +328,7 @@ class PbrtReader {
   std::size_t at_ = 0;
   std::map<std::string, Entry> entries_;
   std::set<std::string> used_;
+  std::vector<std::string> remarks_;
   std::string last_;
   Channels channels_;
 };
