@@ -192,6 +192,16 @@ Ellipsoid Layout::EllipsoidAt(const Shape& shape, const double* u) const {
   return ellipsoid;
 }
 
+void Layout::SetEllipsoid(const Shape& shape, const Ellipsoid& ellipsoid, std::vector<double>* u) const {
+  Ellipsoid entries = ellipsoid;
+  const SlopeCoordinates slope = shape.slope ? SlopeCoordinatesFromEllipsoid(ellipsoid) : SlopeCoordinates();
+  for (std::size_t k = 0; k < shape.entries.size(); ++k) {
+    const int i = shape.entries[k];
+    const double entry = *Entry(&entries, i);
+    (*u)[shape.first + k] = shape.slope ? slope.v[i] : (i < 2 ? std::log(entry) : entry);
+  }
+}
+
 SlopeCoordinates Layout::SlopeAt(const Shape& shape, const double* u) const {
   SlopeCoordinates slope;
   for (std::size_t k = 0; k < shape.entries.size(); ++k) slope.v[shape.entries[k]] = u[shape.first + k];
@@ -263,13 +273,7 @@ KernelModel Layout::ToKernel(const double* u) const {
 std::vector<double> Layout::FromShapes(const std::vector<Ellipsoid>& shapes) const {
   std::vector<double> u(size(), 0.0);
   for (std::size_t l = 0; l < shapes_.size(); ++l) {
-    Ellipsoid ellipsoid = shapes[l];
-    const SlopeCoordinates slope = SlopeCoordinatesFromEllipsoid(ellipsoid);
-    for (std::size_t k = 0; k < shapes_[l].entries.size(); ++k) {
-      const int i = shapes_[l].entries[k];
-      const double entry = *Entry(&ellipsoid, i);
-      u[shapes_[l].first + k] = shapes_[l].slope ? slope.v[i] : (i < 2 ? std::log(entry) : entry);
-    }
+    SetEllipsoid(shapes_[l], shapes[l], &u);
     for (std::size_t k = 0; k < shapes_[l].profile.size(); ++k) {
       const double start = shapes_[l].profile_start[shapes_[l].profile[k]];
       u[shapes_[l].first + shapes_[l].entries.size() + k] = IsGamma(l) ? std::log(start - kLeastGamma) : start;

@@ -57,6 +57,12 @@ class Layout {
   // The coordinates of profiles, from one point to another.
   void CopyProfiles(const std::vector<double>& from, std::vector<double>* to) const;
 
+  // Whether two lobes exchange without another model: of one kind, with the same bounds and fixed values.
+  bool AreInterchangeable(std::size_t lobe, std::size_t other) const;
+  // The point that describes the same material as `u` and is nearest to `to`: lobes of one kind are interchangeable,
+  // the axes of an ellipsoid too, and half a turn of them changes nothing. It may lie beyond bounds of angles.
+  std::vector<double> NearestEquivalent(const std::vector<double>& u, const std::vector<double>& to) const;
+
   // Coordinate of each column of channel `c` of the kernel, the residual's left out; -1: a fixed parameter, or the
   // gain.
   std::vector<int> CoordinatesOfColumns(std::size_t c) const;
@@ -111,6 +117,9 @@ class Layout {
     return linear.index < 0 ? linear.value : u[linear.index];
   }
   Ellipsoid EllipsoidAt(const Shape& shape, const double* u) const;
+  void SetEllipsoid(const Shape& shape, const Ellipsoid& ellipsoid, std::vector<double>* u) const;
+  // Those of the lobe's shape, then of its Fresnel parameters channel by channel; -1: fixed.
+  std::vector<int> CoordinatesOfLobe(std::size_t lobe) const;
   SlopeCoordinates SlopeAt(const Shape& shape, const double* u) const;
 
   Recipe recipe_;

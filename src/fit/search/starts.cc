@@ -57,11 +57,6 @@ std::vector<Ellipsoid> WithGivenStarts(std::vector<Ellipsoid> candidates, const 
   return distinct;
 }
 
-bool SameKind(const Lobe& a, const Lobe& b) {
-  return a.ndf == b.ndf && a.masking == b.masking && a.fresnel == b.fresnel && a.metal == b.metal &&
-         a.direction == b.direction && GridOf(a) == GridOf(b);
-}
-
 }  // namespace
 
 std::vector<std::size_t> StratifiedSubsample(std::size_t samples, std::size_t count, std::uint64_t seed) {
@@ -167,10 +162,10 @@ std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, co
     const std::vector<Ellipsoid> candidates = WithGivenStarts(shapes, recipe, l);
     for (const std::vector<Ellipsoid>& tuple : tuples) {
       for (const Ellipsoid& shape : candidates) {
-        // Lobes of one kind are interchangeable: narrower ones first; and of several lobes only isotropic candidates
+        // Of interchangeable lobes narrower ones first; and of several lobes only isotropic candidates
         // are combined.
         const bool given = !recipe.parameters[FirstParameter(recipe.model, l)].start.empty();
-        const bool same = l > 0 && SameKind(recipe.model.lobes[l - 1], recipe.model.lobes[l]);
+        const bool same = l > 0 && layout.AreInterchangeable(l - 1, l);
         if (!given && !tuple.empty() &&
             (same ? shape.alpha_x <= tuple.back().alpha_x : shape.alpha_x == tuple.back().alpha_x))
           continue;
