@@ -409,6 +409,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   material.weighting = NameOf(WeightingChoices(), recipe.weighting);
   material.loss = NameOf(LossChoices(), recipe.loss);
   material.theta_max_deg = RadiansToDegrees(recipe.theta_max);
+  material.used = {ToToml(wanted), options.starts, options.seed, options.scouting_steps, {}};
   // "solve" is the part of "fit" that searches and descends.
   material.timings_s = {{"read", 0.0}, {"solve", solve_s}, {"fit", SecondsSince(start_time)}, {"report", 0.0}};
   return material;

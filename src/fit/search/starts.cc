@@ -48,6 +48,7 @@ std::vector<Ellipsoid> WithGivenStarts(std::vector<Ellipsoid> candidates, const 
       const std::vector<double>& start = recipe.parameters[FirstParameter(recipe.model, lobe) + i].start;
       if (!start.empty()) *entries[i] = start[0];
     }
+    if (IsRound(recipe.model.lobes[lobe].ndf)) shape.alpha_y = shape.alpha_x;
     const bool seen = std::any_of(distinct.begin(), distinct.end(), [&](const Ellipsoid& other) {
       return other.alpha_x == shape.alpha_x && other.alpha_y == shape.alpha_y && other.theta_x == shape.theta_x &&
              other.theta_y == shape.theta_y && other.theta_z == shape.theta_z;
