@@ -341,8 +341,9 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         bias->noise = again->noise;
       }
       if (!needs_noise) remarks.push_back(ToSwitchRemark(*bias, before));
-    } else if (bias && recipe.metric_given) {
-      const std::string remark = ToBiasRemark(*bias, recipe.metric);
+    } else if (bias) {
+      AddBias(*bias, found->layout, found->best().u, &found->uncertainty);
+      const std::string remark = recipe.metric_given ? ToBiasRemark(*bias, recipe.metric) : "";
       if (!remark.empty()) remarks.push_back(remark);
     }
   }
