@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/fit/search/symmetric_eigen.h"
+#include "lobefit/fit/search/descent.h"
 
 namespace lobefit {
 namespace {
@@ -19,13 +19,14 @@ constexpr const char* kBiasPhrase = " is biased by the noise of these values (";
 // J^T W (T'' s^2 / 2), in the columns of `shift` with the floor's s and with that of all noise, and J^T W J of the
 // samples.
 void AddShift(const Problem& problem, const Layout& layout, const KernelModel& kernel, const Samples& samples,
-              const NoiseModel& noise, const std::vector<std::vector<double>>& f_r, Eigen::MatrixXd* hessian,
+              const NoiseModel& noise, const std::vector<std::vector<double>>& f_r, ArrowMatrix* hessian,
               Eigen::MatrixXd* shift) {
   constexpr std::size_t kPiece = 256;
   std::vector<std::vector<double>> columns;
   std::vector<double> level(kPiece), curvature(kPiece), deviation(kPiece);
   const std::vector<double> one(kPiece, 1.0);
-  Eigen::VectorXd row(shift->rows());
+  KernelSums sums;
+  sums.gram.resize(f_r.size());
   for (std::size_t begin = 0; begin < problem.size(); begin += kPiece) {
     const std::size_t count = std::min(problem.size(), begin + kPiece) - begin;
     Columns(problem.kernel_samples(), kernel, begin, begin + count, &columns);
@@ -36,22 +37,29 @@ void AddShift(const Problem& problem, const Layout& layout, const KernelModel& k
         level[i] = std::max(v, 2 * deviation[i]);
       }
       Curvatures(kernel.transform, level.data(), one.data(), count, curvature.data());
+      const Eigen::Index rows = static_cast<Eigen::Index>(count),
+                         width = static_cast<Eigen::Index>(columns[c].size() / count);
+      const Eigen::Map<const Eigen::MatrixXd> j(columns[c].data(), rows, width);
+      Eigen::MatrixXd moved(rows, 2);
       for (std::size_t i = 0; i < count; ++i) {
-        row.setZero();
-        const double* value = columns[c].data() + i;
-        std::size_t j = 0;
-        for (; j < layout.shape_size(); ++j) row(static_cast<Eigen::Index>(j)) += value[j * count];
-        for (const Layout::Linear& linear : layout.linear(c)) {
-          if (linear.index >= 0) row(linear.index) += value[j * count];
-          ++j;
-        }
-        hessian->selfadjointView<Eigen::Upper>().rankUpdate(row);
         const double half = std::sqrt(problem.Weight(begin + i)) * 0.5 * curvature[i];
-        shift->col(0) += row * (half * noise.floor * noise.floor);
-        shift->col(1) += row * (half * deviation[i] * deviation[i]);
+        moved(static_cast<Eigen::Index>(i), 0) = half * noise.floor * noise.floor;
+        moved(static_cast<Eigen::Index>(i), 1) = half * deviation[i] * deviation[i];
+      }
+      const Eigen::MatrixXd gram = j.transpose() * j, pull = j.transpose() * moved;
+      sums.gram[c].resize(static_cast<std::size_t>(width * (width + 1) / 2), 0.0);
+      double* entry = sums.gram[c].data();
+      for (Eigen::Index a = 0; a < width; ++a) {
+        for (Eigen::Index b = a; b < width; ++b) *entry++ += gram(a, b);
+      }
+      const std::vector<int> index = layout.CoordinatesOfColumns(c);
+      for (std::size_t k = 0; k < index.size(); ++k) {
+        if (index[k] >= 0) shift->row(index[k]) += pull.row(static_cast<Eigen::Index>(k));
       }
     }
   }
+  Eigen::VectorXd gradient;
+  layout.Gather(sums, hessian, &gradient);
 }
 
 // The largest bias of a reported parameter.
@@ -61,7 +69,14 @@ NoiseBias::Largest LargestOf(const Layout& layout, const Eigen::MatrixXd& jacobi
   Eigen::Index row = 0;
   for (const Parameter& parameter : Parameters(layout.recipe().model)) {
     for (std::size_t c = 0; c < (parameter.per_channel ? layout.channels() : 1); ++c, ++row) {
-      const double variance = (jacobian.row(row) * known).dot(jacobian.row(row));
+      std::vector<Eigen::Index> part;  // few of many: a channel's values, or a lobe's shape
+      for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
+        if (jacobian(row, k) != 0) part.push_back(k);
+      }
+      double variance = 0;
+      for (const Eigen::Index k : part) {
+        for (const Eigen::Index l : part) variance += jacobian(row, k) * known(k, l) * jacobian(row, l);
+      }
       const double errors = std::fabs(jacobian.row(row).dot(moved)) / std::sqrt(variance);
       if (std::isfinite(errors) && errors > largest.errors) largest = {errors, parameter.json_name};
     }
@@ -109,24 +124,15 @@ std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vecto
   bias.negative = static_cast<double>(negative) / (channels * static_cast<double>(all.size()));
   bias.near_floor = static_cast<double>(near_floor) / (channels * static_cast<double>(samples.size()));
   const auto n = static_cast<Eigen::Index>(layout.size());
-  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
-  Eigen::MatrixXd shift = Eigen::MatrixXd::Zero(n, 2);
+  ArrowMatrix hessian;
+  Eigen::MatrixXd shift = Eigen::MatrixXd::Zero(n, 2), moved(n, 2);
   AddShift(problem, layout, kernel, samples, *noise, f_r, &hessian, &shift);
+  // What a hair of the curvature is: directions that the samples do not determine stay where they are.
+  constexpr double kUndetermined = 1e-10;
+  hessian.AddToDiagonal(kUndetermined * hessian.Diagonal());
   // Coordinates at a bound have variance 0: they stay there.
-  for (Eigen::Index k = 0; k < n; ++k) {
-    if (covariance(k, k) > 0) continue;
-    hessian.row(k).setZero();
-    hessian.col(k).setZero();
-    hessian(k, k) = 1;
-    shift.row(k).setZero();
-  }
-  hessian = Eigen::MatrixXd(hessian.selfadjointView<Eigen::Upper>());
-  const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 0.0; });
-  const SymmetricEigen eigen = DecomposeSymmetric(scale.asDiagonal() * hessian * scale.asDiagonal());
-  const Eigen::VectorXd inverse = eigen.values.unaryExpr([](double x) { return x > 1e-10 ? 1 / x : 0.0; });
-  const Eigen::MatrixXd moved =
-      scale.asDiagonal() *
-      (eigen.vectors * (inverse.asDiagonal() * (eigen.vectors.transpose() * (scale.asDiagonal() * shift))));
+  const Eigen::VectorXd room = covariance.diagonal().unaryExpr([](double x) { return x > 0 ? 1e300 : 0.0; });
+  for (Eigen::Index k = 0; k < 2; ++k) moved.col(k) = BoundedStep(hessian, -shift.col(k), -room, room);
   const Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
   const Eigen::MatrixXd known = covariance.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
   bias.of_floor = LargestOf(layout, jacobian, moved.col(0), known);

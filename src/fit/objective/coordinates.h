@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "lobefit/fit/objective/arrow.h"
 #include "lobefit/fit/objective/kernel.h"
 #include "lobefit/recipe/recipe.h"
 
@@ -69,6 +70,8 @@ class Layout {
 
   // Gauss-Newton matrix J^T J and gradient J^T r in solver coordinates from the sums over samples.
   void Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
+  // The same, linear in the channels.
+  void Gather(const KernelSums& sums, ArrowMatrix* hessian, Eigen::VectorXd* gradient) const;
   // Scores of the kernel (shape columns, then [channel][linear]) as scores of the solver's coordinates, arrays by
   // coordinate.
   std::vector<std::vector<double>> GatherScores(const std::vector<std::vector<double>>& scores) const;
@@ -103,6 +106,10 @@ class Layout {
     std::size_t columns() const { return entries.size() + profile.size(); }
   };
 
+  // Calls add(channel, i, j, value) for each entry of the upper triangles of the channels, and of the priors (of shapes),
+  // that is one of J^T J, and sums up the gradient.
+  template <class Add>
+  void GatherEntries(const KernelSums& sums, const Add& add, Eigen::VectorXd* gradient) const;
   void AddShape(std::size_t lobe, const std::vector<Parameter>& parameters, std::size_t first_parameter);
   void AddProfile(std::size_t lobe, const std::vector<Parameter>& parameters, Shape* shape);
   // The mean over the recipe's aperture, and bounds that keep the lobe as wide as its cubature can take.

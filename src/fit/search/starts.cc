@@ -131,22 +131,19 @@ std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double p
 }
 
 double SolveLinear(const Problem& problem, const Layout& layout, std::vector<double>* u, ThreadPool* pool) {
-  Eigen::MatrixXd hessian;
+  ArrowMatrix hessian;
   Eigen::VectorXd gradient;
   const double cost = Linearise(problem, layout, u->data(), pool, &hessian, &gradient);
-  const auto first = static_cast<Eigen::Index>(layout.shape_size());
-  const Eigen::Index n = gradient.size() - first;
-  if (n == 0 || !hessian.allFinite() || !gradient.allFinite()) return cost;
-  Eigen::VectorXd low(n), high(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(first + i);
-    low(i) = layout.coordinates()[k].low - (*u)[k];
-    high(i) = layout.coordinates()[k].high - (*u)[k];
+  if (layout.size() == layout.shape_size() || !hessian.AllFinite() || !gradient.allFinite()) return cost;
+  Eigen::VectorXd low = Eigen::VectorXd::Zero(gradient.size()), high = low;  // shapes stay
+  for (std::size_t k = layout.shape_size(); k < layout.size(); ++k) {
+    low(static_cast<Eigen::Index>(k)) = layout.coordinates()[k].low - (*u)[k];
+    high(static_cast<Eigen::Index>(k)) = layout.coordinates()[k].high - (*u)[k];
   }
-  const Eigen::VectorXd step = BoundedStep(hessian.bottomRightCorner(n, n), gradient.tail(n), low, high);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(first + i);
-    (*u)[k] = std::clamp((*u)[k] + step(i), layout.coordinates()[k].low, layout.coordinates()[k].high);
+  const Eigen::VectorXd step = BoundedStep(hessian, gradient, low, high);
+  for (std::size_t k = layout.shape_size(); k < layout.size(); ++k) {
+    (*u)[k] = std::clamp((*u)[k] + step(static_cast<Eigen::Index>(k)), layout.coordinates()[k].low,
+                         layout.coordinates()[k].high);
   }
   return problem.Sum(layout.ToKernel(u->data()), false, pool).sum_rho / 2;
 }
