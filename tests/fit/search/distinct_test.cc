@@ -90,6 +90,22 @@ TEST(DistinctMinima, APointWithinTwoStandardErrorsIsTheSame) {
   }
 }
 
+// A descent that stopped a little above the minimum near it is not the minimum found again.
+TEST(DistinctMinima, AnotherCostIsAnotherMinimum) {
+  const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.2, 0.2, 0, 0, 0);
+  Ends ends(truth, StandardLayout(), DefaultRecipe(truth.model, "ggx"));
+  const std::vector<double> u = ends.layout.FromShapes({{0.2, 0.2, 0, 0, 0}});
+  const auto residuals = static_cast<double>(ends.problem.size() * ends.problem.channels());
+  ASSERT_GT(residuals, 9000) << "a relative 1e-5 is a twentieth of a variance";
+  for (const double relative : {0.9e-5, 1.1e-5, 1e-3}) {
+    ends.minima.clear();
+    ends.Add(u);
+    ends.Add(u);
+    ends.minima[1].solution.cost *= 1 + relative;
+    EXPECT_EQ(ends.Joined(), relative < 1e-5 ? 1U : 2U) << relative;
+  }
+}
+
 TEST(DistinctMinima, ExchangedLobesAreOne) {
   SyntheticCase truth = OneLobe(Ndf::kGgx, 0.1, 0.1, 0, 0, 0);
   truth.model.lobes.push_back(truth.model.lobes[0]);
