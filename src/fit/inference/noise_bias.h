@@ -29,9 +29,9 @@ struct NoiseBias {
 };
 
 // To first order noise of standard deviation s moves the mean of a transformed reading by T''(v) s^2 / 2, and the
-// parameters by d = (J^T J)^-1 J^T (T'' s^2 / 2). What noise of the value does is the same share of every value, rho^2 / 3
-// under the cube root: no reason for another curve, so that the floor's part is told apart, but more than a standard
-// error where samples are many. Good while v > 2 s: below, v is taken as 2 s. `covariance` is that of the solver's
+// parameters by d = (J^T J)^-1 J^T (T'' s^2 / 2). What noise of the value does is the same share of every value,
+// rho^2 / 3 under the cube root: no reason for another curve, so that the floor's part is told apart, but more than a
+// standard error where samples are many. Good while v > 2 s: below, v is taken as 2 s. `covariance` is that of the solver's
 // coordinates. Nothing where the noise cannot be estimated.
 std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vector<double>& u,
                                           const Eigen::MatrixXd& covariance, const Samples& samples,
@@ -42,7 +42,7 @@ std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vecto
 void AddBias(const NoiseBias& bias, const Layout& layout, const std::vector<double>& u, Uncertainty* uncertainty);
 
 // Whether Metric::kAsinh should take the place of an automatic metric: more than 0.1 % of the readings are negative,
-// more than 5 % of the model's values lie below 3 floors, or a parameter is biased by the floor by more than half of its
+// more than 5 % of the model's values lie below 3 floors, or the floor biases a parameter by more than half of its
 // standard error.
 bool WantsAsinh(const NoiseBias& bias);
 
