@@ -66,7 +66,7 @@ bool IsMinimum(const BoundedObjective& objective, const Eigen::VectorXd& u, doub
 // without curvature stays at 0.
 Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
                             const Eigen::VectorXd& high);
-// The same of an arrow, by the Schur complement of the channels' own blocks. A coordinate with low = high is held there.
+// The same of an arrow, by the Schur complement of the channels' own blocks. A coordinate with low = high is held.
 Eigen::VectorXd BoundedStep(const ArrowMatrix& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
                             const Eigen::VectorXd& high);
 
