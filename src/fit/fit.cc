@@ -373,8 +373,9 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
         bias->noise = again->noise;
       }
       if (!needs_noise) remarks.push_back(ToSwitchRemark(*bias, before));
-    } else if (bias && recipe.metric_given) {
-      const std::string remark = ToBiasRemark(*bias, recipe.metric);
+    } else if (bias) {
+      AddBias(*bias, found->layout, found->best().u, &found->uncertainty);
+      const std::string remark = recipe.metric_given ? ToBiasRemark(*bias, recipe.metric) : "";
       if (!remark.empty()) remarks.push_back(remark);
     }
   }
@@ -442,6 +443,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   material.weighting = NameOf(WeightingChoices(), recipe.weighting);
   material.loss = NameOf(LossChoices(), recipe.loss);
   material.theta_max_deg = RadiansToDegrees(recipe.theta_max);
+  material.used = {ToToml(wanted), options.starts, options.seed, options.scouting_steps, {}};
   // "solve" is the part of "fit" that searches and descends.
   material.timings_s = {{"read", 0.0}, {"solve", solve_s}, {"fit", SecondsSince(start_time)}, {"report", 0.0}};
   return material;

@@ -64,11 +64,16 @@ Samples SomeChannels(const Samples& samples, const std::vector<std::size_t>& ind
   return some;
 }
 
-// The lobes' ellipses as starts of the first lobes of a recipe.
+// The lobes' ellipses as starts of the first lobes of a recipe, within the ranges of its parameters.
 void StartAt(const std::vector<ParameterValues>& shapes, Recipe* recipe) {
+  const std::vector<Parameter> parameters = Parameters(recipe->model);
   for (std::size_t l = 0; l < std::min(shapes.size(), recipe->model.lobes.size()); ++l) {
     const std::size_t first = FirstParameter(recipe->model, l);
-    for (std::size_t i = 0; i < kEllipseParameters; ++i) recipe->parameters[first + i].start = shapes[l][i];
+    for (std::size_t i = 0; i < kEllipseParameters; ++i) {
+      const Parameter& parameter = parameters[first + i];
+      if (!parameter.free) continue;
+      recipe->parameters[first + i].start = {std::clamp(shapes[l][i][0], parameter.low, parameter.high)};
+    }
   }
 }
 

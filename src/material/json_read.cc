@@ -356,6 +356,19 @@ void ReadRest(const Reader& reader, Material* material) {
   material->weighting = reader.Get<std::string>(recipe, "weighting");
   material->loss = reader.Get<std::string>(recipe, "loss");
   material->theta_max_deg = reader.Get<double>(recipe, "theta_max_deg");
+  if (recipe.contains("text")) {
+    constexpr std::size_t kMostStarts = 100000;
+    constexpr int kMostSteps = 100000;
+    material->used = {reader.Get<std::string>(recipe, "text"), reader.Get<std::size_t>(recipe, "starts"),
+                      reader.Get<std::uint64_t>(recipe, "seed"), reader.Get<int>(recipe, "scouting_steps"),
+                      reader.Get<std::map<std::string, std::string>>(recipe, "reading")};
+    if (material->used->starts < 1 || material->used->starts > kMostStarts)
+      reader.Fail(fmt::format("the recipe's 'starts' is {}; allowed are 1 to {}", material->used->starts, kMostStarts));
+    if (material->used->scouting_steps < 0 || material->used->scouting_steps > kMostSteps) {
+      reader.Fail(fmt::format("the recipe's 'scouting_steps' is {}; allowed are 0 to {}",
+                              material->used->scouting_steps, kMostSteps));
+    }
+  }
   material->command = reader.Get<std::string>(root, "command");
 }
 

@@ -234,6 +234,15 @@ std::string ToJson(const Material& material) {
         {"loss", material.loss},
         {"theta_max_deg", material.theta_max_deg}}},
   };
+  if (material.used) {
+    const RecipeUsed& used = *material.used;
+    Json& recipe = json["recipe"];
+    recipe["text"] = used.text;
+    recipe["starts"] = used.starts;
+    recipe["seed"] = used.seed;
+    recipe["scouting_steps"] = used.scouting_steps;
+    recipe["reading"] = used.reading;
+  }
   if (material.sel) json["sel"] = SelToJson(*material.sel);
   if (material.instrument) json["instrument"] = InstrumentToJson(*material.instrument);
   // Bytes that are not UTF-8 (a file name may hold any) become the replacement character.

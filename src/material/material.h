@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -132,6 +133,16 @@ struct Source {
   std::map<std::string, std::string> conventions;
 };
 
+// What repeats the fit of a measurement: `lobefit fit FILE --recipe DOCUMENT`.
+struct RecipeUsed {
+  std::string text;  // the recipe as ParseRecipe reads it, before the fit chose what it leaves open
+  std::size_t starts = 0;
+  std::uint64_t seed = 0;
+  int scouting_steps = 0;  // FitOptions
+  // Options of `lobefit fit` by which the measurement was read and selected: "theta-i", "10:50".
+  std::map<std::string, std::string> reading;
+};
+
 struct Material {
   Model model;
   // A table of lobes in place of a model, whose lobes and parameters are then empty.
@@ -168,6 +179,7 @@ struct Material {
   std::string recipe_name, recipe_reason;  // why this recipe, where it was chosen automatically
   std::string metric, weighting, loss;
   double theta_max_deg = 90;
+  std::optional<RecipeUsed> used;  // of fits; documents of earlier versions lack it
   std::string command;
 
   // Inside values in the form that Reflectance takes.

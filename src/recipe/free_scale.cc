@@ -36,7 +36,7 @@ Recipe WithFreeScale(const Recipe& recipe) {
   }
   LiftReflectanceBounds(&free);
   free.free_scale = true;
-  free.name = recipe.name + "-free-scale";
+  if (!free.name.ends_with("-free-scale")) free.name += "-free-scale";
   return free;
 }
 

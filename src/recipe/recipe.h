@@ -95,7 +95,7 @@ struct Recipe {
   bool free_scale = false;  // the scale of the values is not known: no albedo follows from them (free_scale.h)
   Loss loss = Loss::kNone;
   double loss_scale = 0.1;
-  double theta_max = 80 * 3.14159265358979323846 / 180;  // radians
+  double theta_max = DegreesToRadians(80);
   InstrumentRecipe instrument;
   // Of the channels, for metals; empty: the measurement's own.
   std::vector<double> wavelengths_nm;
@@ -115,8 +115,11 @@ Recipe DefaultRecipe(const Model& model, const std::string& name);
 Recipe ReadRecipe(const std::filesystem::path& path);
 Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name);
 
-// The recipe as TOML that ParseRecipe reads back.
+// The recipe as TOML that ParseRecipe reads back. What ParseRecipe gave comes back to the last bit, but for `reason`
+// and `plane_azimuth`.
 std::string ToToml(const Recipe& recipe);
+// The recipe as its text says it: angles that no number of degrees stands for are rounded.
+Recipe AsWritten(const Recipe& recipe);
 
 // The recipe with eta and k of lobes of a metal fixed to the published values at the channels' wavelengths, which are
 // the recipe's own or else `wavelengths_nm`. Throws InputError where there are none, or the metal is not known there.

@@ -10,6 +10,7 @@
 #include "lobefit/base/toml_file.h"
 #include "lobefit/core/fresnel/optical_constants.h"
 #include "lobefit/math/vec.h"
+#include "lobefit/recipe/free_scale.h"
 #include "lobefit/recipe/recipe.h"
 
 namespace lobefit {
@@ -233,27 +234,6 @@ void ReadInstrument(const toml::table& root, const TomlFile& place, Recipe* reci
   }
 }
 
-// The section that ReadInstrument reads; empty where nothing is stated.
-std::string InstrumentToToml(const Recipe& recipe) {
-  const InstrumentRecipe& instrument = recipe.instrument;
-  std::string text;
-  if (instrument.source) text += fmt::format("source = {}\n", FormatDouble(RadiansToDegrees(*instrument.source)));
-  if (instrument.detector) text += fmt::format("detector = {}\n", FormatDouble(RadiansToDegrees(*instrument.detector)));
-  if (instrument.mean) text += fmt::format("mean = \"{}\"\n", NameOf(ApertureMeanChoices(), *instrument.mean));
-  if (recipe.noise.IsKnown()) {
-    text += fmt::format("noise = {{ floor = {}, relative = {} }}\n", FormatDouble(recipe.noise.floor),
-                        FormatDouble(recipe.noise.relative));
-  }
-  if (instrument.drift)
-    text += "drift = " + (instrument.drift->sd ? FormatDouble(*instrument.drift->sd) : std::string("\"auto\"")) + '\n';
-  if (instrument.alignment) {
-    text +=
-        fmt::format("alignment = {{ prior_deg = {} }}\n", FormatDouble(RadiansToDegrees(instrument.alignment->prior)));
-  }
-  if (instrument.offset) text += "offset = true\n";
-  return text.empty() ? text : "\n[instrument]\n" + text;
-}
-
 // A recipe of a table of lobes: what belongs to a model has no place in it.
 Recipe ReadSelRecipe(const toml::table& root, const TomlFile& place) {
   const toml::table& table = *Table(root, "sel", place);
@@ -284,11 +264,22 @@ Recipe ReadSelRecipe(const toml::table& root, const TomlFile& place) {
   return recipe;
 }
 
+bool IsScaleFree(const toml::table& root, const TomlFile& place, const Recipe& recipe) {
+  const toml::node* node = root.get("scale");
+  if (node == nullptr) return false;
+  const std::string text = node->value<std::string>().value_or("?");
+  if (text != "free" && text != "calibrated")
+    place.Fail(node->source(), fmt::format("scale = '{}' is unknown; allowed: calibrated, free", Excerpt(text)));
+  if (text == "free" && recipe.energy == EnergyChoice::kConserving)
+    place.Fail(node->source(), "values without a scale have no albedo that energy = \"conserving\" could limit");
+  return text == "free";
+}
+
 // The part of a recipe that names a model.
 Recipe ReadModelRecipe(const toml::table& root, const TomlFile& place) {
   place.CheckKeys(root,
-                  {"name", "metric", "weighting", "energy", "loss", "theta_max_deg", "wavelengths_nm", "diffuse",
-                   "instrument", "lobe", "parameters", "sel"},
+                  {"name", "metric", "weighting", "energy", "scale", "loss", "theta_max_deg", "wavelengths_nm",
+                   "diffuse", "instrument", "lobe", "parameters", "sel"},
                   "of a recipe");
   Model model;
   if (const toml::node* lobes = root.get("lobe")) {
@@ -323,7 +314,7 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
   if (const std::optional<double> limit = Number(root, "theta_max_deg", place)) {
     if (*limit <= 0 || *limit > 90)
       place.Fail(root.get("theta_max_deg")->source(), "theta_max_deg must lie in (0, 90]");
-    recipe.theta_max = *limit * kPi / 180;
+    recipe.theta_max = DegreesToRadians(*limit);
   }
   recipe.wavelengths_nm = Numbers(root, "wavelengths_nm", true, 1, place);
   if (const toml::table* table = Table(root, "parameters", place)) {
@@ -343,77 +334,12 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
       }
     }
   }
-  return recipe;
+  return IsScaleFree(root, place, recipe) ? WithFreeScale(recipe) : recipe;
 }
 
 Recipe ReadRecipe(const std::filesystem::path& path) {
   const FileBytes file(path);
   return ParseRecipe(std::string(file.bytes()), path.string());
-}
-
-std::string ToToml(const Recipe& recipe) {
-  if (recipe.sel) {
-    return fmt::format(
-        "name = \"{}\"\nmetric = \"{}\"\nweighting = \"{}\"\ntheta_max_deg = {}\n\n[sel]\nlobes = {}\nquantity = "
-        "\"{}\"\nbound = {}\ndrift = {}\n",
-        recipe.name, NameOf(MetricChoices(), recipe.metric), NameOf(WeightingChoices(), recipe.weighting),
-        FormatDouble(RadiansToDegrees(recipe.theta_max)), recipe.sel->lobes, NameOf(recipe.sel->quantity),
-        recipe.sel->bound, FormatDouble(recipe.sel->drift));
-  }
-  std::string text =
-      fmt::format("name = \"{}\"\nweighting = \"{}\"\ntheta_max_deg = {}\ndiffuse = \"{}\"\n", recipe.name,
-                  NameOf(WeightingChoices(), recipe.weighting), FormatDouble(RadiansToDegrees(recipe.theta_max)),
-                  NameOf(DiffuseChoices(), recipe.model.diffuse));
-  // Where it was not given, the fit may choose another.
-  if (recipe.metric_given || recipe.metric != Recipe().metric)
-    text += fmt::format("metric = \"{}\"\n", NameOf(MetricChoices(), recipe.metric));
-  if (recipe.energy != EnergyChoice::kFree)
-    text += fmt::format("energy = \"{}\"\n", NameOf(EnergyChoices(), recipe.energy));
-  if (recipe.loss != Loss::kNone) {
-    text += fmt::format("loss = {{ kind = \"{}\", scale = {} }}\n", NameOf(LossChoices(), recipe.loss),
-                        FormatDouble(recipe.loss_scale));
-  }
-  if (!recipe.wavelengths_nm.empty()) {
-    std::vector<std::string> numbers;
-    for (const double wavelength : recipe.wavelengths_nm) numbers.push_back(FormatDouble(wavelength));
-    text += "wavelengths_nm = [" + Join(numbers) + "]\n";
-  }
-  for (const Lobe& lobe : recipe.model.lobes) {
-    text +=
-        fmt::format("\n[[lobe]]\nndf = \"{}\"\nmasking = \"{}\"\nfresnel = \"{}\"\n", NameOf(NdfChoices(), lobe.ndf),
-                    NameOf(MaskingChoices(), lobe.masking), NameOf(FresnelChoices(), lobe.fresnel));
-    if (!lobe.metal.empty()) text += fmt::format("metal = \"{}\"\n", lobe.metal);
-    if (lobe.direction != LobeDirection::kSpecular)
-      text += fmt::format("direction = \"{}\"\n", NameOf(LobeDirectionChoices(), lobe.direction));
-    if (lobe.grid != nullptr) {
-      std::vector<std::string> knots;
-      for (const double r : lobe.grid->spline()->knots()) knots.push_back(FormatDouble(r));
-      text += "knots = [" + Join(knots) + "]\n";
-    }
-  }
-  text += InstrumentToToml(recipe);
-  text += "\n[parameters]\n";
-  const std::vector<Parameter> parameters = Parameters(recipe.model);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const ParameterRecipe& parameter = recipe.parameters[i];
-    const double factor = InsideFactor(parameters[i]);
-    std::vector<std::string> parts;
-    const auto list = [&](const std::vector<double>& values) {
-      std::vector<std::string> numbers;
-      for (const double value : values) numbers.push_back(FormatDouble(value / factor));
-      return numbers.size() == 1 ? numbers[0] : "[" + Join(numbers) + "]";
-    };
-    if (!parameter.start.empty()) parts.push_back("start = " + list(parameter.start));
-    if (!parameter.fixed.empty()) parts.push_back("fixed = " + list(parameter.fixed));
-    if (parameter.low)
-      parts.push_back(fmt::format("bounds = [{}, {}]", FormatDouble(*parameter.low / factor),
-                                  FormatDouble(*parameter.high / factor)));
-    if (parameter.shared != parameters[i].shared)
-      parts.emplace_back(parameter.shared ? "shared = true" : "shared = false");
-    if (parameter.free) parts.emplace_back("free = true");
-    if (!parts.empty()) text += fmt::format("\"{}\" = {{ {} }}\n", parameters[i].json_name, Join(parts));
-  }
-  return text;
 }
 
 }  // namespace lobefit

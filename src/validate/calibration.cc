@@ -145,7 +145,7 @@ Calibration Calibrate(const Experiment& experiment, const std::vector<Trial>& tr
   result.planned = trials.size();
   result.judge_clustered = experiment.noise.drift > 0;
   std::vector<double> seconds;
-  std::size_t misfits = 0;
+  std::size_t misfits = 0, biased = 0;
   const Trial* first = nullptr;
   for (const Trial& trial : trials) {
     if (!trial.done) continue;
@@ -157,6 +157,7 @@ Calibration Calibrate(const Experiment& experiment, const std::vector<Trial>& tr
     if (first == nullptr) first = &trial;
     seconds.push_back(trial.seconds);
     misfits += trial.misfit ? 1 : 0;
+    biased += trial.biased ? 1 : 0;
     if (!trial.converged) ++result.not_converged;
     if (!trial.determined || !trial.degenerate.empty()) ++result.not_determined;
     // Rounding: costs that agree to 1e-9, or residuals of 1e-12 on average, are equal.
@@ -167,6 +168,7 @@ Calibration Calibrate(const Experiment& experiment, const std::vector<Trial>& tr
     }
   }
   result.misfit = ShareOf(misfits, seconds.size());
+  result.biased = ShareOf(biased, seconds.size());
   result.seconds_median = Quantile(seconds, 0.5);
   result.seconds_95 = Quantile(seconds, 0.95);
   if (first == nullptr) {
@@ -217,6 +219,8 @@ std::string TableOf(const Calibration& calibration) {
       "wrong minimum: {}, of these without a sign: {}; not converged: {}; something not determined: {}\n",
       calibration.wrong_minima, calibration.wrong_unflagged, calibration.not_converged, calibration.not_determined);
   text += fmt::format("misfit flag raised in % of the fits: {}\n", Percent(calibration.misfit));
+  if (calibration.biased.count > 0)
+    text += fmt::format("bias of the metric named in % of the fits: {}\n", Percent(calibration.biased));
   std::size_t width = 9;
   for (const EntryCalibration& entry : calibration.entries) width = std::max(width, entry.entry.name.size());
   const char* kind = calibration.judge_clustered ? "clustered by incidence" : "independent samples";

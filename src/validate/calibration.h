@@ -47,6 +47,7 @@ struct Calibration {
   // Of these, fits that gave no sign: converged, determined, no second minimum reported, no misfit flag.
   std::size_t wrong_unflagged = 0;
   Share misfit;  // fits whose misfit flag was raised: false alarms where the model is the truth's
+  Share biased;  // fits that say that their metric is biased by the noise
   double seconds_median = 0, seconds_95 = 0;
   // The clustered intervals are the ones to judge: samples of an incidence are dependent.
   bool judge_clustered = false;

@@ -73,6 +73,7 @@ Json Document(const Experiment& experiment, const Calibration& calibration, cons
       {"seconds_a_fit",
        {{"median", Number(calibration.seconds_median)}, {"percentile_95", Number(calibration.seconds_95)}}},
       {"misfit_flagged", ToObject(calibration.misfit)},
+      {"bias_named", ToObject(calibration.biased)},
       {"judged", calibration.judge_clustered ? "clustered" : "independent"},
       {"parameters", EntriesOf(calibration)},
   });

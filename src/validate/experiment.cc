@@ -1,5 +1,6 @@
 #include "lobefit/validate/experiment.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -7,6 +8,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/fit.h"
+#include "lobefit/fit/inference/noise_bias.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/math/vec.h"
@@ -124,6 +126,7 @@ Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measure
     trial.cost = material.cost;
     trial.minima = material.minima.size();
     trial.misfit = material.misfit && material.misfit->flagged;
+    trial.biased = std::any_of(material.remarks.begin(), material.remarks.end(), IsBiasRemark);
     trial.samples = measurement.samples.size();
     trial.incidences = GroupByIncidence(measurement).wi.size();
     // A fit that chose another metric, or estimated the noise that its own needs, minimised another cost.

@@ -44,6 +44,7 @@ struct Trial {
   double difference = 0;  // largest relative one of the fitted parameters from the true ones; NaN as above
   std::size_t minima = 0, samples = 0, incidences = 0;
   bool misfit = false;  // flagged
+  bool biased = false;  // the fit says that its metric is biased by the noise
   double seconds = 0;
 };
 

@@ -82,8 +82,11 @@ const Knob kKnobs[] = {
        if (!(step >= 0.2 && step <= 45)) throw UsageError("--sweep detector-step: values from 0.2 to 45 degrees");
        r->layout.goniometer.detector_step = DegreesToRadians(step);
      }},
-    {"metric", [](const std::string& name, const std::string& value,
-                  ExperimentRequest* r) { r->recipe.metric = ChoiceOf(name, value, MetricChoices()); }},
+    {"metric",
+     [](const std::string& name, const std::string& value, ExperimentRequest* r) {
+       r->recipe.metric = ChoiceOf(name, value, MetricChoices());
+       r->recipe.metric_given = true;
+     }},
     {"masking",
      [](const std::string& name, const std::string& value, ExperimentRequest* r) {
        r->recipe.model.lobes[0].masking = ChoiceOf(name, value, MaskingChoices());

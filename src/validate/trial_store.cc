@@ -61,6 +61,7 @@ Trial TrialOf(const Json& line) {
   trial.samples = line.at("samples").get<std::size_t>();
   trial.incidences = line.at("incidences").get<std::size_t>();
   trial.misfit = line.at("misfit").get<bool>();
+  trial.biased = line.at("biased").get<bool>();
   trial.seconds = NumberOf(line.at("seconds"));
   return trial;
 }
@@ -140,6 +141,7 @@ std::string ToLine(const std::string& key, std::size_t index, const Trial& trial
                      {"samples", trial.samples},
                      {"incidences", trial.incidences},
                      {"misfit", trial.misfit},
+                     {"biased", trial.biased},
                      {"seconds", TrialNumber(trial.seconds)}};
   return line.dump(-1, ' ', true, Json::error_handler_t::replace);
 }

@@ -1,6 +1,6 @@
 // Whole fits, in one run: against one AutoDiffCostFunction a sample with the same model, start and end; growth of time
 // and memory with the number of samples; two lobes; very many small fits. Prints a table in Markdown.
-//   bench_fit [--quick] [growth|autodiff|small|two-lobes]...
+//   bench_fit [--quick] [growth|channels|autodiff|small|two-lobes]...
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -20,6 +20,7 @@
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/fit_many.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/search.h"
 #include "lobefit/fit/search/solve.h"
 #include "lobefit/math/directions.h"
 
@@ -260,6 +261,34 @@ void Growth(const std::vector<std::size_t>& counts) {
   }
 }
 
+// The search for the best minimum of a spectrum.
+void Spectra(const std::vector<std::size_t>& counts) {
+  fmt::print("\n| 200 samples x channels | coordinates | search, s | exponent |\n|---|---|---|---|\n");
+  double last = 0;
+  std::size_t last_count = 0;
+  for (const std::size_t count : counts) {
+    Truth truth = OneLobeTruth(Ndf::kEllipsoid);
+    for (std::vector<double>& v : truth.values) {
+      if (v.size() > 1) v.resize(count, v[0]);
+    }
+    const Measurement measurement = Random(truth, 200, count, 6);
+    const Recipe recipe = DefaultRecipe(truth.model, "bench");
+    const Layout layout(recipe, measurement.channels.names);
+    const Problem problem(measurement.samples, recipe);
+    ThreadPool pool(HardwareThreads());
+    const double start = Now();
+    FindMinima(problem, layout, measurement.samples, {}, &pool);
+    const double seconds = Now() - start;
+    const double exponent =
+        last > 0 ? std::log(seconds / last) / std::log(static_cast<double>(count) / static_cast<double>(last_count))
+                 : NAN;
+    fmt::print("| {} | {} | {:.2f} | {:.2f} |\n", count, layout.size(), seconds, exponent);
+    std::fflush(stdout);
+    last = seconds;
+    last_count = count;
+  }
+}
+
 void TwoLobes(std::size_t count) {
   Measurement measurement = Random(TwoLobeTruth(), count, 3, 3);
   FitOptions options;
@@ -327,6 +356,9 @@ int main(int argc, char** argv) {
   if (wanted("growth")) {
     lobefit::Growth(quick ? std::vector<std::size_t>{1000, 2000}
                           : std::vector<std::size_t>{10000, 100000, 1000000, 10000000});
+  }
+  if (wanted("channels")) {
+    lobefit::Spectra(quick ? std::vector<std::size_t>{40, 80} : std::vector<std::size_t>{100, 200, 400, 800});
   }
   if (wanted("autodiff")) lobefit::AgainstAutoDiff(quick ? 2000 : 1458000);
   if (wanted("small")) lobefit::SmallFits(quick ? 50 : 10000);

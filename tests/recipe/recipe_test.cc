@@ -1,5 +1,6 @@
 #include "lobefit/recipe/recipe.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include "tests/support/paths.h"
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {
@@ -70,6 +72,44 @@ TEST(Recipe, FreesWhatIsFixedByDefault) {
   EXPECT_TRUE(fixed.IsFree(5));  // the index
   EXPECT_EQ(ToToml(ParseRecipe(ToToml(recipe), "r.toml")), ToToml(recipe));
   EXPECT_TRUE(ParseRecipe(ToToml(recipe), "r.toml").IsFree(6));
+}
+
+// Degrees become radians when they are read: what is written is the number that becomes the same radians again.
+TEST(Recipe, AnglesComeBackFromTheTextToTheLastBit) {
+  for (int i = 1; i < 600; ++i) {
+    const double degrees = 0.1 * i;
+    const Recipe recipe = ParseRecipe(
+        "theta_max_deg = " + std::to_string(degrees) +
+            "\n[[lobe]]\nndf = \"ellipsoid\"\n[parameters]\ntheta_x_deg = { start = " + std::to_string(degrees) +
+            ", bounds = [" + std::to_string(-degrees) + ", " + std::to_string(degrees + 1) + "] }\n",
+        "a.toml");
+    const Recipe again = ParseRecipe(ToToml(recipe), "b.toml");
+    EXPECT_EQ(again.theta_max, recipe.theta_max) << degrees;
+    EXPECT_EQ(again.parameters[2].start, recipe.parameters[2].start) << degrees;
+    EXPECT_EQ(again.parameters[2].low, recipe.parameters[2].low) << degrees;
+    EXPECT_EQ(again.parameters[2].high, recipe.parameters[2].high) << degrees;
+    EXPECT_THAT(ToToml(recipe),
+                testing::HasSubstr("theta_max_deg = " + FormatDouble(std::round(10 * degrees) / 10) + "\n"));
+  }
+}
+
+TEST(Recipe, NamesComeBackWithQuotesAndControlCharacters) {
+  Recipe recipe = ParseRecipe("[[lobe]]\n", "a.toml");
+  recipe.name = "a \"b\" \\ c\n\t\x7f d";
+  EXPECT_EQ(ParseRecipe(ToToml(recipe), "b.toml").name, recipe.name);
+}
+
+TEST(Recipe, AFreeScaleComesBackAndIsCheckedAgainstEnergy) {
+  const Recipe recipe = ParseRecipe("name = \"x\"\nscale = \"free\"\n[[lobe]]\nfresnel = \"schlick\"\n", "a.toml");
+  EXPECT_TRUE(recipe.free_scale);
+  EXPECT_EQ(recipe.model.lobes[0].fresnel, Fresnel::kNone);
+  EXPECT_EQ(recipe.name, "x-free-scale");
+  const Recipe again = ParseRecipe(ToToml(recipe), "b.toml");
+  EXPECT_EQ(ToToml(again), ToToml(recipe));
+  EXPECT_TRUE(again.free_scale);
+  EXPECT_FALSE(ParseRecipe("scale = \"calibrated\"\n[[lobe]]\n", "c.toml").free_scale);
+  EXPECT_THROW(ParseRecipe("scale = \"loose\"\n[[lobe]]\n", "c.toml"), InputError);
+  EXPECT_THROW(ParseRecipe("scale = \"free\"\nenergy = \"conserving\"\n[[lobe]]\n", "c.toml"), InputError);
 }
 
 TEST(Recipe, MetalsNeedAWavelengthAChannel) {

@@ -5,8 +5,34 @@
 #include "tests/validate/brushed.h"
 #include <gtest/gtest.h>
 
+#include "lobefit/validate/calibration.h"
+#include "lobefit/validate/sweep.h"
+
 namespace lobefit {
 namespace {
+
+// The sweep is about it: a fit that turned to another would show nothing of it.
+TEST(Sweep, AMetricThatIsSweptIsGiven) {
+  ExperimentRequest request;
+  request.recipe = DefaultRecipe(test::BrushedMetal().model, "test");
+  const Sweep sweep = ParseSweep("metric=cube-root,log", request);
+  EXPECT_EQ(sweep.points.at(0).request.recipe.metric, Metric::kCubeRoot);
+  EXPECT_TRUE(sweep.points[0].request.recipe.metric_given);
+  EXPECT_TRUE(sweep.points.at(1).request.recipe.metric_given);
+}
+
+// Where the metric is bent by the noise the fits say so, and the calibration counts it.
+TEST(Calibration, CountsFitsThatNameTheBiasOfTheirMetric) {
+  Experiment experiment = test::BrushedExperiment("multiplicative=0.1");
+  experiment.recipe.metric_given = true;
+  for (const Metric metric : {Metric::kRelative, Metric::kCosineL2}) {
+    experiment.recipe.metric = metric;
+    const Calibration calibration = Calibrate(experiment, test::Run(experiment, 4));
+    EXPECT_EQ(calibration.biased.count, metric == Metric::kRelative ? 4U : 0U);
+    EXPECT_EQ(calibration.biased.total, 4U);
+    EXPECT_EQ(TableOf(calibration).find("bias of the metric named") != std::string::npos, metric == Metric::kRelative);
+  }
+}
 
 TEST(Experiment, TrialsDoNotDependOnThreadsOrOnHowManyThereAre) {
   Experiment experiment = test::BrushedExperiment("multiplicative=0.05,drift=0.02");

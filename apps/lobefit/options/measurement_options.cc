@@ -32,6 +32,35 @@ void MeasurementOptions::AddTo(CLI::App* app) {
   }
 }
 
+std::vector<std::pair<std::string, std::string*>> MeasurementOptions::Named() {
+  std::vector<std::pair<std::string, std::string*>> named = {
+      {"theta-i", &theta_i_}, {"phi-i", &phi_i_}, {"channels", &channels_}};
+  words_.resize(ReadOptionTable().size());
+  for (std::size_t i = 0; i < words_.size(); ++i) named.emplace_back(ReadOptionTable()[i].name, &words_[i]);
+  return named;
+}
+
+std::map<std::string, std::string> MeasurementOptions::Words() const {
+  std::map<std::string, std::string> words;
+  MeasurementOptions copy = *this;
+  for (const auto& [name, word] : copy.Named()) {
+    if (!word->empty()) words[name] = *word;
+  }
+  return words;
+}
+
+void MeasurementOptions::FillFrom(const std::map<std::string, std::string>& words, const std::string& document) {
+  const std::vector<std::pair<std::string, std::string*>> named = Named();
+  for (const auto& [name, word] : words) {
+    const auto at = std::find_if(named.begin(), named.end(), [&](const auto& option) { return option.first == name; });
+    if (at == named.end())
+      throw InputError(document + ": the fit that it holds was read with --" + Excerpt(name) +
+                       ", which this version does not have");
+    if (at->second->empty()) *at->second = word;
+  }
+  document_ = document;
+}
+
 std::filesystem::path OnlyFile(const std::vector<std::string>& files) {
   return files.size() == 1 ? ParseFileSpec(files[0]).path : std::filesystem::path();
 }
@@ -70,8 +99,13 @@ void MeasurementOptions::Check() const {
 
 Measurement MeasurementOptions::Load(const std::vector<std::string>& files) const {
   Measurement measurement = ReadSeries(files, Read());
-  for (std::size_t i = 0; i < words_.size(); ++i) {
-    if (!words_[i].empty()) CheckOptionOf(ReadOptionTable()[i], measurement.format, files.front());
+  try {
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      if (!words_[i].empty()) CheckOptionOf(ReadOptionTable()[i], measurement.format, files.front());
+    }
+  } catch (const UsageError& error) {
+    if (document_.empty()) throw;
+    throw UsageError(std::string(error.what()) + "; unless it was given here, it is of the fit in " + document_);
   }
   SelectDirections(&measurement);
   return measurement;

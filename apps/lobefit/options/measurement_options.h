@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -30,15 +32,22 @@ class MeasurementOptions {
   Measurement LoadStated(const std::vector<std::string>& files) const;
   // Throws UsageError for words that no file can make valid.
   void Check() const;
+  // The words that were given, by option: "theta-i", "10:50".
+  std::map<std::string, std::string> Words() const;
+  // Takes those of a document's fit where none was given. Throws InputError for an option that there is not.
+  void FillFrom(const std::map<std::string, std::string>& words, const std::string& document);
   // Keeps the chosen incident directions and channels.
   void Select(Measurement* measurement) const;
 
  private:
   ReadOptions Read() const;
+  // Each option's name and word.
+  std::vector<std::pair<std::string, std::string*>> Named();
   void SelectDirections(Measurement* measurement) const;
 
   std::string theta_i_, phi_i_, channels_;
   std::vector<std::string> words_;  // of the options of ReadOptionTable(), in its order; empty: not given
+  std::string document_;            // whose words some are; empty: none
 };
 
 }  // namespace lobefit

@@ -11,6 +11,7 @@
 #include "lobefit/base/text.h"
 #include "lobefit/fit/automatic.h"
 #include "lobefit/fit/fit.h"
+#include "lobefit/material/json.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/recipe/free_scale.h"
 
@@ -27,6 +28,20 @@ void Override(const std::string& text, const char* option, const std::vector<Cho
         fmt::format("{} '{}' is unknown{}; allowed: {}", option, Excerpt(text), DidYouMean(text, names), Join(names)));
   }
   *value = choice->value;
+}
+
+bool IsDocument(const std::string& name_or_path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(name_or_path, error) && LooksLikeMaterial(name_or_path);
+}
+
+const RecipeUsed& UsedBy(const Material& document, const std::string& path) {
+  if (!document.used) {
+    throw InputError(
+        Excerpt(path, 200) +
+        ": does not hold its recipe (an earlier version wrote it, or no fit); give a recipe by name or file");
+  }
+  return *document.used;
 }
 
 }  // namespace
@@ -53,6 +68,12 @@ std::vector<std::string> RecipeNames() {
 
 Recipe LoadRecipe(const std::string& name_or_path) {
   std::error_code error;
+  if (IsDocument(name_or_path)) {
+    const Material document = ReadMaterial(name_or_path);
+    Recipe recipe = ParseRecipe(UsedBy(document, name_or_path).text, name_or_path + ", recipe");
+    recipe.reason = document.recipe_reason;
+    return recipe;
+  }
   // A folder that has the name of a recipe does not stand in its way.
   if (std::filesystem::exists(name_or_path, error) && !std::filesystem::is_directory(name_or_path, error))
     return ReadRecipe(name_or_path);
@@ -91,28 +112,33 @@ void RecipeOverrides::Apply(Recipe* recipe) const {
   Override(energy_, "--energy", EnergyChoices(), &recipe->energy);
   if (recipe->energy == EnergyChoice::kConserving) {
     if (recipe->sel) throw UsageError("--energy conserving is for models; a recipe with [sel] fits a table of lobes");
-    if (scale_ == "free") {
+    if (scale_ == "free" || recipe->free_scale) {
       throw UsageError(
           "--scale free says that the values are not calibrated, so no albedo follows from them and energy "
           "'conserving' has no meaning; leave one of the two out");
     }
   }
+  if (scale_ == "calibrated" && recipe->free_scale) {
+    throw UsageError("recipe '" + recipe->name +
+                     "' says that the scale of the values is free; take a recipe without, or leave --scale out");
+  }
   if (scale_ == "free") *recipe = WithFreeScale(*recipe);
 }
 
-void RecipeOverrides::Remark(Measurement* measurement) const {
-  if (scale_ != "free") return;
+void RemarkFreeScale(const Recipe& recipe, Measurement* measurement) {
+  if (!recipe.free_scale) return;
   measurement->conventions["scale"] = "free (option)";
   measurement->remarks.emplace_back(
       "the scale of the values is not known (--scale free): the shape is fitted, amplitudes stand relative to each "
-      "other, and "
-      "no reflectance or albedo follows from them");
+      "other, and no reflectance or albedo follows from them");
 }
 
 void RecipeOptions::AddTo(CLI::App* app) {
   const std::string group = "What to fit";
-  app->add_option("--recipe", recipe_,
-                  "a recipe by name or a .toml file; 'auto' (default) takes what the measurement can determine")
+  app->add_option(
+         "--recipe", recipe_,
+         "a recipe by name, a .toml file, or a *.material.json whose fit is repeated; 'auto' (default) takes what "
+         "the measurement can determine")
       ->group(group);
   overrides_.AddTo(app, group);
   instrument_.AddTo(app);
@@ -129,7 +155,19 @@ Recipe RecipeOptions::Choose(const Measurement& measurement) const {
 std::string RecipeOptions::Resolved() const {
   Recipe recipe = IsAutomatic() ? Recipe() : LoadRecipe(recipe_);
   overrides_.Apply(&recipe);
-  return IsAutomatic() ? "recipe = auto\n" : ToToml(recipe);
+  if (IsAutomatic()) return "recipe = auto\n";
+  std::string text = ToToml(recipe);
+  if (const std::optional<RecipeUsed> used = UsedByDocument()) {
+    text +=
+        fmt::format("starts = {}\nseed = {}\nscouting_steps = {}\n", used->starts, used->seed, used->scouting_steps);
+    for (const auto& [option, word] : used->reading) text += option + " = " + word + "\n";
+  }
+  return text;
+}
+
+std::optional<RecipeUsed> RecipeOptions::UsedByDocument() const {
+  if (IsAutomatic() || !IsDocument(recipe_)) return std::nullopt;
+  return UsedBy(ReadMaterial(recipe_), recipe_);
 }
 
 void FittedModel::AddTo(CLI::App* app) {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "options/instrument_options.h"
 #include <CLI/CLI.hpp>
 
+#include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"
 
@@ -19,8 +21,6 @@ class RecipeOverrides {
   void AddTo(CLI::App* app, const std::string& group);
   // Throws UsageError.
   void Apply(Recipe* recipe) const;
-  // Says in the measurement, and so in every result, what the values are taken for.
-  void Remark(Measurement* measurement) const;
   bool HasFreeScale() const { return scale_ == "free"; }
 
  private:
@@ -35,6 +35,9 @@ class RecipeOptions {
   // Throws UsageError and InputError.
   Recipe Choose(const Measurement& measurement) const;
   const RecipeOverrides& overrides() const { return overrides_; }
+  // Where the recipe is a document's: what repeats its fit.
+  std::optional<RecipeUsed> UsedByDocument() const;
+  const std::string& name() const { return recipe_; }
   // The recipe as text, or that it is chosen by the measurement: what decides the fit beside the other options. Throws
   // as Choose.
   std::string Resolved() const;
@@ -61,7 +64,11 @@ class FittedModel {
   InstrumentOptions instrument_;
 };
 
-// A recipe file, or a recipe of the library by its name ("ellipsoid"). Throws InputError that lists the names.
+// A recipe file, a recipe of the library by its name ("ellipsoid"), or that of a *.material.json. Throws InputError that
+// lists the names.
 Recipe LoadRecipe(const std::string& name_or_path);
+
+// Says in the measurement, and so in every result, what the values are taken for where the recipe's scale is free.
+void RemarkFreeScale(const Recipe& recipe, Measurement* measurement);
 
 }  // namespace lobefit

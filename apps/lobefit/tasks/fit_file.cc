@@ -28,6 +28,20 @@ Measurement Sampled(const FitFileOptions& options, const std::string& file) {
   return measurement;
 }
 
+// The options, with those of the document whose fit is repeated where none were given.
+FitFileOptions Resolved(const FitFileOptions& given) {
+  FitFileOptions options = given;
+  if (const std::optional<RecipeUsed> used = options.recipe.UsedByDocument()) {
+    options.measurement.FillFrom(used->reading, options.recipe.name());
+    options.fit.seed = used->seed;
+    options.fit.starts = used->starts;
+    if (!options.starts) options.fit.scouting_steps = used->scouting_steps;
+  }
+  options.fit.starts = options.starts.value_or(options.fit.starts);
+  options.fit.seed = options.seed.value_or(options.fit.seed);
+  return options;
+}
+
 }  // namespace
 
 bool IsOneMaterial(const std::vector<std::string>& files) {
@@ -35,25 +49,26 @@ bool IsOneMaterial(const std::vector<std::string>& files) {
 }
 
 void FitFileOptions::AddTo(CLI::App* app) {
-  app->add_option("--starts", fit.starts,
+  app->add_option("--starts", starts,
                   "descents from the best-ranked starts (default 8; five times as many for several lobes)")
       ->check(CLI::Range(1, 100000));
-  app->add_option("--seed", fit.seed, "seed of the subsample on which starts are ranked (default 1)");
+  app->add_option("--seed", seed, "seed of the subsample on which starts are ranked (default 1)");
   recipe.AddTo(app);
   measurement.AddTo(app);
 }
 
-FittedFile FitFile(const FitFileOptions& options, const std::vector<std::string>& files, int threads,
+FittedFile FitFile(const FitFileOptions& given, const std::vector<std::string>& files, int threads,
                    const std::string& command) {
   const auto start = std::chrono::steady_clock::now();
+  const FitFileOptions options = Resolved(given);
   FittedFile fitted;
   const bool of_material = IsOneMaterial(files);
   fitted.measurement = of_material ? Sampled(options, files[0]) : options.measurement.LoadStated(files);
   const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   FitOptions fit = options.fit;
   fit.threads = threads;
-  options.recipe.overrides().Remark(&fitted.measurement);
   Recipe recipe = options.recipe.Choose(fitted.measurement);
+  RemarkFreeScale(recipe, &fitted.measurement);
   if (of_material && !recipe.sel) {
     throw UsageError(fmt::format(
         "{}: is a material, to which only lobes can be fitted; add --recipe sel, or give a measurement file",
@@ -65,13 +80,15 @@ FittedFile FitFile(const FitFileOptions& options, const std::vector<std::string>
     LadderChoice choice = ClimbLadder(WithoutLastDescent(through), fit, &fitted.measurement);
     recipe = std::move(choice.recipe);
     // A number of descents that the user asked for is kept.
-    if (choice.warm && fit.starts == FitOptions().starts) {
+    if (choice.warm && !options.starts) {
       fit.scouting_steps = kScoutingSteps;
       fit.starts = kWarmStarts;
     }
     recipe.instrument = through.instrument;
     tried = std::move(choice.tried);
   }
+  // What is fitted is what the document says, to the last bit of an angle.
+  recipe = AsWritten(recipe);
   fitted.material = FitRecipe(recipe, fit, &fitted.measurement);
   if (options.recipe.IsAutomatic() && !options.recipe.overrides().HasFreeScale()) {
     if (const std::optional<Recipe> alternative = AutomaticAlternative(recipe, fitted.material))
@@ -80,6 +97,7 @@ FittedFile FitFile(const FitFileOptions& options, const std::vector<std::string>
   fitted.material.tried = std::move(tried);
   AddAdvice(&fitted.material);
   fitted.material.command = command;
+  fitted.material.used->reading = options.measurement.Words();
   fitted.material.timings_s["read"] = read_s;
   return fitted;
 }

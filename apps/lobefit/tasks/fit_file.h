@@ -1,6 +1,8 @@
 // From files to a fitted material by the options of `lobefit fit`: what the verbs fit and batch share.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,8 @@ struct FitFileOptions {
   MeasurementOptions measurement;
   RecipeOptions recipe;
   FitOptions fit;
+  std::optional<std::size_t> starts;  // FitOptions::starts and seed, where they were given
+  std::optional<std::uint64_t> seed;
 
   // The object must outlive the parsing.
   void AddTo(CLI::App* app);

@@ -154,13 +154,16 @@ int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   for (const std::string& path : verb.with) given.push_back(LoadGiven(path));
   Measurement measurement = verb.measurement.LoadStated(verb.files);
   const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  verb.overrides.Remark(&measurement);
   CompareOptions options = verb.compare;
   options.fit.threads = common.Threads();
-  Comparison comparison = Compare(ChooseRecipes(verb, measurement), given, options, &measurement);
+  const std::vector<Recipe> recipes = ChooseRecipes(verb, measurement);
+  const auto free_scale = std::find_if(recipes.begin(), recipes.end(), [](const Recipe& r) { return r.free_scale; });
+  if (free_scale != recipes.end()) RemarkFreeScale(*free_scale, &measurement);
+  Comparison comparison = Compare(recipes, given, options, &measurement);
 
   Material& material = comparison.models[comparison.recommended].material;
   material.command = common.command;
+  if (material.used) material.used->reading = verb.measurement.Words();
   material.timings_s["read"] = read_s;
   material.recipe_reason = comparison.reason;
   // The document first: it is kept even where drawing fails.

@@ -1,6 +1,8 @@
 #include "lobefit/core/ndf/ellipsoid_symmetry.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "lobefit/core/ndf/canonical_axes.h"
@@ -61,6 +63,22 @@ Ellipsoid PromoteAxis(const Ellipsoid& ellipsoid, int axis) {
   const double ax = ellipsoid.alpha_x, ay = ellipsoid.alpha_y;
   if (axis == 0) return EllipsoidFromRotation(ay / ax, 1 / ax, {{{r.row[1], r.row[2], r.row[0]}}});
   return EllipsoidFromRotation(1 / ay, ax / ay, {{{r.row[2], r.row[0], r.row[1]}}});
+}
+
+Ellipsoid NearestEllipsoid(const Ellipsoid& ellipsoid, const Ellipsoid& to) {
+  Ellipsoid nearest = ellipsoid;
+  double least = std::numeric_limits<double>::infinity();
+  for (Ellipsoid e : {ellipsoid, SwapAxes(ellipsoid)}) {
+    for (int turn = 0; turn < 2; ++turn, e = {e.alpha_x, e.alpha_y, -e.theta_x, -e.theta_y, e.theta_z + kPi}) {
+      e.theta_z = to.theta_z + std::remainder(e.theta_z - to.theta_z, 2 * kPi);
+      const double gaps[] = {std::log(e.alpha_x / to.alpha_x), std::log(e.alpha_y / to.alpha_y), e.theta_x - to.theta_x,
+                             e.theta_y - to.theta_y, e.theta_z - to.theta_z};
+      double square = 0;
+      for (const double gap : gaps) square += gap * gap;
+      if (square < least) least = square, nearest = e;
+    }
+  }
+  return nearest;
 }
 
 Ellipsoid MirrorY(const Ellipsoid& e) { return {e.alpha_x, e.alpha_y, -e.theta_x, e.theta_y, -e.theta_z}; }

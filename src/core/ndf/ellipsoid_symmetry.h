@@ -27,6 +27,10 @@ Ellipsoid SwapAxes(const Ellipsoid& ellipsoid);
 // alpha_x or (1, alpha_x, alpha_y) / alpha_y. Alphas above 1 are legal.
 Ellipsoid PromoteAxis(const Ellipsoid& ellipsoid, int axis);
 
+// The parameters of the same distribution that are nearest to `to` by the logarithms of the alphas and the angles, of
+// the half turn (-theta_x, -theta_y, theta_z + pi), the exchanged axes and full turns of theta_z.
+Ellipsoid NearestEllipsoid(const Ellipsoid& ellipsoid, const Ellipsoid& to);
+
 // The distribution seen in a mirror that reverses y: D(m_x, -m_y, m_z; mirrored) = D(m).
 Ellipsoid MirrorY(const Ellipsoid& ellipsoid);
 

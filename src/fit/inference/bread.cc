@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -52,31 +53,19 @@ Eigen::MatrixXd LossCurvature(const Problem& problem, const Layout& layout, cons
   return partial[0];
 }
 
-// Which coordinates belong to the border, and which to one channel alone.
-struct Arrow {
-  std::vector<int> border;
-  std::vector<std::vector<int>> own;  // [channel]
-};
-
-Arrow ArrowOf(const Layout& layout, const std::vector<bool>& at_bound) {
+// The coordinates that no bound holds; all of them in the border where a loss or a gain couples the channels.
+ArrowShape FreeArrow(const Layout& layout, const std::vector<bool>& at_bound) {
   const bool coupled = layout.recipe().loss != Loss::kNone || layout.recipe().instrument.drift;
-  constexpr int kSeveral = -2, kNone = -1;
-  std::vector<int> channel(layout.size(), kNone);
-  for (std::size_t c = 0; c < layout.channels(); ++c) {
-    for (const Layout::Linear& linear : layout.linear(c)) {
-      if (linear.index < 0) continue;
-      int& of = channel[static_cast<std::size_t>(linear.index)];
-      of = of == kNone || of == static_cast<int>(c) ? static_cast<int>(c) : kSeveral;
-    }
+  ArrowShape shape = ArrowShapeOf(layout);
+  if (coupled) {
+    shape.border.resize(layout.size());
+    std::iota(shape.border.begin(), shape.border.end(), 0);
+    for (std::vector<int>& own : shape.own) own.clear();
   }
-  Arrow arrow;
-  arrow.own.resize(layout.channels());
-  for (std::size_t i = 0; i < layout.size(); ++i) {
-    if (at_bound[i]) continue;
-    std::vector<int>& part = coupled || channel[i] < 0 ? arrow.border : arrow.own[static_cast<std::size_t>(channel[i])];
-    part.push_back(static_cast<int>(i));
-  }
-  return arrow;
+  const auto held = [&](int i) { return at_bound[static_cast<std::size_t>(i)]; };
+  std::erase_if(shape.border, held);
+  for (std::vector<int>& own : shape.own) std::erase_if(own, held);
+  return shape;
 }
 
 Eigen::MatrixXd Part(const Eigen::MatrixXd& matrix, const std::vector<int>& rows, const std::vector<int>& columns) {
@@ -154,7 +143,7 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
 
   // With D a channel's own block, E its block with the border and S the border's, T = D^-1 E:
   //   A^-1 = sum of own (D^-1) + (1, -T)^T (S - sum of E^T T)^-1 (1, -T).
-  const Arrow arrow = ArrowOf(layout, bread.at_bound);
+  const ArrowShape arrow = FreeArrow(layout, bread.at_bound);
   const std::size_t channels = layout.channels();
   bread.border = static_cast<Eigen::Index>(arrow.border.size());
   Eigen::Index columns = bread.border;

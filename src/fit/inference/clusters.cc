@@ -1,5 +1,6 @@
 #include "lobefit/fit/inference/clusters.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lobefit/fit/search/symmetric_eigen.h"
@@ -11,19 +12,34 @@ constexpr std::size_t kMostExact = 100;
 // Numbers of 8 bytes that the exact degrees of freedom may store.
 constexpr double kMostStored = 4e6;
 
+// Of a positive matrix, from below, by powers of it.
+double LargestEigenvalue(const Eigen::MatrixXd& matrix) {
+  constexpr int kPowers = 20;
+  Eigen::VectorXd v = Eigen::VectorXd::Ones(matrix.rows());
+  double value = 0;
+  for (int k = 0; k < kPowers; ++k) {
+    v.normalize();
+    v = (matrix * v).eval();
+    value = v.norm();
+  }
+  return value;
+}
+
 }  // namespace
 
 Eigen::MatrixXd InverseRootTimes(const Eigen::MatrixXd& curvature, const Eigen::MatrixXd& vectors) {
-  // The power series or the eigenvectors, whichever takes fewer operations.
-  const double norm = curvature.norm();
+  // The power series or the eigenvectors, whichever takes fewer operations. The norm is that of many channels' many
+  // small parts, of which none is near 1; the powers tell, and the series itself, whether they told right.
+  const double norm = std::min(curvature.norm(), LargestEigenvalue(curvature));
   const double terms = norm < 1 ? 36 / -std::log(norm) : INFINITY;
-  if (terms <= 10.0 * static_cast<double>(curvature.rows())) {
+  const auto rows = static_cast<double>(curvature.rows()), columns = static_cast<double>(vectors.cols());
+  if (terms * columns <= 5 * rows + 2 * columns) {
     Eigen::MatrixXd term = vectors, sum = vectors;
-    for (int k = 1; term.squaredNorm() > 1e-32 * sum.squaredNorm(); ++k) {
+    for (int k = 1; k < 2 * terms + 10; ++k) {
       term = (curvature * term * ((k - 0.5) / k)).eval();
       sum += term;
+      if (term.squaredNorm() <= 1e-32 * sum.squaredNorm()) return sum;
     }
-    return sum;
   }
   const SymmetricEigen eigen = DecomposeSymmetric(curvature);
   const Eigen::VectorXd factor =

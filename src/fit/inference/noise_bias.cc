@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/fit/search/symmetric_eigen.h"
+#include "lobefit/fit/search/descent.h"
 
 namespace lobefit {
 namespace {
@@ -14,55 +14,74 @@ constexpr double kMostNegative = 0.001, kMostNearFloor = 0.05, kMostErrors = 0.5
 
 double DeviationAt(const NoiseModel& noise, double v) { return std::hypot(noise.floor, noise.relative * v); }
 
-// J^T W (T'' floor^2 / 2) and J^T W J of the samples.
+constexpr const char* kBiasPhrase = " is biased by the noise of these values (";
+
+// J^T W (T'' s^2 / 2), in the columns of `shift` with the floor's s and with that of all noise, and J^T W J of the
+// samples.
 void AddShift(const Problem& problem, const Layout& layout, const KernelModel& kernel, const Samples& samples,
-              const NoiseModel& noise, const std::vector<std::vector<double>>& f_r, Eigen::MatrixXd* hessian,
-              Eigen::VectorXd* shift) {
+              const NoiseModel& noise, const std::vector<std::vector<double>>& f_r, ArrowMatrix* hessian,
+              Eigen::MatrixXd* shift) {
   constexpr std::size_t kPiece = 256;
   std::vector<std::vector<double>> columns;
-  std::vector<double> level(kPiece), curvature(kPiece);
+  std::vector<double> level(kPiece), curvature(kPiece), deviation(kPiece);
   const std::vector<double> one(kPiece, 1.0);
-  Eigen::VectorXd row(shift->size());
+  KernelSums sums;
+  sums.gram.resize(f_r.size());
   for (std::size_t begin = 0; begin < problem.size(); begin += kPiece) {
     const std::size_t count = std::min(problem.size(), begin + kPiece) - begin;
     Columns(problem.kernel_samples(), kernel, begin, begin + count, &columns);
     for (std::size_t c = 0; c < columns.size(); ++c) {
       for (std::size_t i = 0; i < count; ++i) {
         const double v = f_r[c][begin + i] * samples.wi_z[begin + i];
-        level[i] = std::max(v, 2 * DeviationAt(noise, v));
+        deviation[i] = DeviationAt(noise, v);
+        level[i] = std::max(v, 2 * deviation[i]);
       }
       Curvatures(kernel.transform, level.data(), one.data(), count, curvature.data());
+      const Eigen::Index rows = static_cast<Eigen::Index>(count),
+                         width = static_cast<Eigen::Index>(columns[c].size() / count);
+      const Eigen::Map<const Eigen::MatrixXd> j(columns[c].data(), rows, width);
+      Eigen::MatrixXd moved(rows, 2);
       for (std::size_t i = 0; i < count; ++i) {
-        row.setZero();
-        const double* value = columns[c].data() + i;
-        std::size_t j = 0;
-        for (; j < layout.shape_size(); ++j) row(static_cast<Eigen::Index>(j)) += value[j * count];
-        for (const Layout::Linear& linear : layout.linear(c)) {
-          if (linear.index >= 0) row(linear.index) += value[j * count];
-          ++j;
-        }
-        hessian->selfadjointView<Eigen::Upper>().rankUpdate(row);
-        *shift += row * (std::sqrt(problem.Weight(begin + i)) * 0.5 * curvature[i] * noise.floor * noise.floor);
+        const double half = std::sqrt(problem.Weight(begin + i)) * 0.5 * curvature[i];
+        moved(static_cast<Eigen::Index>(i), 0) = half * noise.floor * noise.floor;
+        moved(static_cast<Eigen::Index>(i), 1) = half * deviation[i] * deviation[i];
+      }
+      const Eigen::MatrixXd gram = j.transpose() * j, pull = j.transpose() * moved;
+      sums.gram[c].resize(static_cast<std::size_t>(width * (width + 1) / 2), 0.0);
+      double* entry = sums.gram[c].data();
+      for (Eigen::Index a = 0; a < width; ++a) {
+        for (Eigen::Index b = a; b < width; ++b) *entry++ += gram(a, b);
+      }
+      const std::vector<int> index = layout.CoordinatesOfColumns(c);
+      for (std::size_t k = 0; k < index.size(); ++k) {
+        if (index[k] >= 0) shift->row(index[k]) += pull.row(static_cast<Eigen::Index>(k));
       }
     }
   }
+  Eigen::VectorXd gradient;
+  layout.Gather(sums, hessian, &gradient);
 }
 
-// The bias of the reported parameters, of which the largest is kept.
-void NameLargest(const Layout& layout, const std::vector<double>& u, const Eigen::VectorXd& moved,
-                 const Eigen::MatrixXd& covariance, NoiseBias* bias) {
-  const Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
-  const Eigen::MatrixXd known = covariance.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
+// The largest bias of a reported parameter.
+NoiseBias::Largest LargestOf(const Layout& layout, const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& moved,
+                             const Eigen::MatrixXd& known) {
+  NoiseBias::Largest largest;
   Eigen::Index row = 0;
   for (const Parameter& parameter : Parameters(layout.recipe().model)) {
     for (std::size_t c = 0; c < (parameter.per_channel ? layout.channels() : 1); ++c, ++row) {
-      const double variance = (jacobian.row(row) * known).dot(jacobian.row(row));
+      std::vector<Eigen::Index> part;  // few of many: a channel's values, or a lobe's shape
+      for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
+        if (jacobian(row, k) != 0) part.push_back(k);
+      }
+      double variance = 0;
+      for (const Eigen::Index k : part) {
+        for (const Eigen::Index l : part) variance += jacobian(row, k) * known(k, l) * jacobian(row, l);
+      }
       const double errors = std::fabs(jacobian.row(row).dot(moved)) / std::sqrt(variance);
-      if (!std::isfinite(errors) || !(errors > bias->errors)) continue;
-      bias->errors = errors;
-      bias->parameter = parameter.json_name;
+      if (std::isfinite(errors) && errors > largest.errors) largest = {errors, parameter.json_name};
     }
   }
+  return largest;
 }
 
 std::string NoiseInWords(const NoiseModel& noise) {
@@ -72,7 +91,7 @@ std::string NoiseInWords(const NoiseModel& noise) {
   return fmt::format("noise floor {:.2g}/sr, noise {:.2g} % of the value", noise.floor, 100 * noise.relative);
 }
 
-std::string BiasInWords(const NoiseBias& bias, const char* metric) {
+std::string BiasInWords(const NoiseBias::Largest& bias, const char* metric) {
   if (!(bias.errors > kMostErrors)) return fmt::format("{} would be biased by such noise", metric);
   return fmt::format("{} would be biased by such noise ({} by about {:.2g} standard errors)", metric, bias.parameter,
                      bias.errors);
@@ -105,31 +124,40 @@ std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vecto
   bias.negative = static_cast<double>(negative) / (channels * static_cast<double>(all.size()));
   bias.near_floor = static_cast<double>(near_floor) / (channels * static_cast<double>(samples.size()));
   const auto n = static_cast<Eigen::Index>(layout.size());
-  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd shift = Eigen::VectorXd::Zero(n);
+  ArrowMatrix hessian;
+  Eigen::MatrixXd shift = Eigen::MatrixXd::Zero(n, 2), moved(n, 2);
   AddShift(problem, layout, kernel, samples, *noise, f_r, &hessian, &shift);
+  // What a hair of the curvature is: directions that the samples do not determine stay where they are.
+  constexpr double kUndetermined = 1e-10;
+  hessian.AddToDiagonal(kUndetermined * hessian.Diagonal());
   // Coordinates at a bound have variance 0: they stay there.
-  for (Eigen::Index k = 0; k < n; ++k) {
-    if (covariance(k, k) > 0) continue;
-    hessian.row(k).setZero();
-    hessian.col(k).setZero();
-    hessian(k, k) = 1;
-    shift(k) = 0;
-  }
-  hessian = Eigen::MatrixXd(hessian.selfadjointView<Eigen::Upper>());
-  const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 0.0; });
-  const SymmetricEigen eigen = DecomposeSymmetric(scale.asDiagonal() * hessian * scale.asDiagonal());
-  const Eigen::VectorXd inverse = eigen.values.unaryExpr([](double x) { return x > 1e-10 ? 1 / x : 0.0; });
-  const Eigen::VectorXd moved =
-      scale.asDiagonal() *
-      (eigen.vectors * (inverse.asDiagonal() * (eigen.vectors.transpose() * (scale.asDiagonal() * shift))));
-  NameLargest(layout, u, moved, covariance, &bias);
+  const Eigen::VectorXd room = covariance.diagonal().unaryExpr([](double x) { return x > 0 ? 1e300 : 0.0; });
+  for (Eigen::Index k = 0; k < 2; ++k) moved.col(k) = BoundedStep(hessian, -shift.col(k), -room, room);
+  const Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
+  const Eigen::MatrixXd known = covariance.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
+  bias.of_floor = LargestOf(layout, jacobian, moved.col(0), known);
+  bias.of_all = LargestOf(layout, jacobian, moved.col(1), known);
+  bias.moved = moved.col(1);
   return bias;
+}
+
+void AddBias(const NoiseBias& bias, const Layout& layout, const std::vector<double>& u, Uncertainty* uncertainty) {
+  const Eigen::VectorXd moved = layout.ReportJacobian(u.data()) * bias.moved;
+  const Eigen::Index entries = uncertainty->covariance.rows();
+  for (Eigen::MatrixXd* covariance : {&uncertainty->covariance, &uncertainty->clustered}) {
+    if (covariance == &uncertainty->clustered && !uncertainty->has_clusters) continue;
+    for (Eigen::Index i = 0; i < entries; ++i) {
+      for (Eigen::Index j = 0; j < entries; ++j) {
+        // What is fixed stays so.
+        if ((*covariance)(i, i) > 0 && (*covariance)(j, j) > 0) (*covariance)(i, j) += moved(i) * moved(j);
+      }
+    }
+  }
 }
 
 bool WantsAsinh(const NoiseBias& bias) {
   return bias.noise.floor > 0 &&
-         (bias.negative > kMostNegative || bias.near_floor > kMostNearFloor || bias.errors > kMostErrors);
+         (bias.negative > kMostNegative || bias.near_floor > kMostNearFloor || bias.of_floor.errors > kMostErrors);
 }
 
 NoiseModel NoiseForAsinh(const NoiseModel& estimated) {
@@ -153,15 +181,18 @@ std::string ToSwitchRemark(const NoiseBias& bias, Metric before) {
   }
   const char* name = RowOf(before).name;
   return fmt::format("{} ({}): fitted with metric asinh, knee {:.2g}/sr; {}. --metric {} keeps it", why,
-                     NoiseInWords(bias.noise), used.floor / used.relative, BiasInWords(bias, name), name);
+                     NoiseInWords(bias.noise), used.floor / used.relative, BiasInWords(bias.of_floor, name), name);
 }
 
 std::string ToBiasRemark(const NoiseBias& bias, Metric metric) {
-  if (!(bias.errors > kMostErrors)) return "";
-  return fmt::format(
-      "metric {} is biased by the noise of these values ({}): {} by about {:.2g} standard errors; "
-      "--metric asinh is not",
-      RowOf(metric).name, NoiseInWords(bias.noise), bias.parameter, bias.errors);
+  const NoiseBias::Largest& largest = bias.of_all;
+  if (!(largest.errors > kMostErrors)) return "";
+  return fmt::format("metric {}{}{}): {} by about {:.2g} standard errors; --metric asinh is not", RowOf(metric).name,
+                     kBiasPhrase, NoiseInWords(bias.noise), largest.parameter, largest.errors);
+}
+
+bool IsBiasRemark(const std::string& remark) {
+  return remark.starts_with("metric ") && remark.find(kBiasPhrase) != std::string::npos;
 }
 
 }  // namespace lobefit

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "lobefit/core/ndf/ellipsoid_symmetry.h"
 #include "lobefit/core/ndf/off_center.h"
 #include "lobefit/fit/inference/sample_rows.h"
 #include "lobefit/math/directions.h"
@@ -92,30 +93,47 @@ std::vector<double> MirrorImage(const Layout& layout, const std::vector<double>&
   return image;
 }
 
+// The rival's values in the form nearest to the material's.
+ParameterValues NearestValues(const Layout& layout, const std::vector<double>& u, const Material& material) {
+  ParameterValues values = layout.Report(u.data());
+  for (std::size_t l = 0; l < material.model.lobes.size(); ++l) {
+    const std::size_t first = FirstParameter(material.model, l);
+    std::vector<double>* p = values.data() + first;
+    const FittedParameter* q = material.parameters.data() + first;
+    const Ellipsoid nearest =
+        NearestEllipsoid({p[0][0], p[1][0], p[2][0], p[3][0], p[4][0]},
+                         {q[0].values[0], q[1].values[0], q[2].values[0], q[3].values[0], q[4].values[0]});
+    p[0][0] = nearest.alpha_x, p[1][0] = nearest.alpha_y;
+    p[2][0] = nearest.theta_x, p[3][0] = nearest.theta_y, p[4][0] = nearest.theta_z;
+  }
+  return values;
+}
+
 // Parameters that the rival puts elsewhere, in words; empty where it is the same solution. They lose their standard
 // errors.
 std::string Differences(const Layout& layout, const std::vector<double>& u, Material* material) {
-  const ParameterValues values = layout.Report(u.data());
+  const ParameterValues values = NearestValues(layout, u, *material);
   const std::vector<Parameter> parameters = Parameters(material->model);
   std::vector<std::string> words;
-  std::vector<std::size_t> differing;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     FittedParameter& fitted = material->parameters[i];
-    if (!fitted.free || parameters[i].group != ParameterGroup::kShape) continue;
-    const double sigma = std::max(fitted.standard_error[0], std::isnan(fitted.standard_error_clustered[0])
-                                                                ? fitted.standard_error[0]
-                                                                : fitted.standard_error_clustered[0]);
-    double gap = values[i][0] - fitted.values[0];
-    if (parameters[i].name.ends_with("theta_z")) gap = std::remainder(gap, kPi);
-    if (!(std::fabs(gap) > kSigmas * sigma)) continue;
-    differing.push_back(i);
-    words.push_back(fmt::format("{} {:.4g} in place of {:.4g}", parameters[i].json_name,
-                                values[i][0] / InsideFactor(parameters[i]),
-                                fitted.values[0] / InsideFactor(parameters[i])));
-  }
-  for (const std::size_t i : differing) {
-    material->parameters[i].standard_error = material->parameters[i].standard_error_clustered =
-        material->parameters[i].freedom = {std::numeric_limits<double>::quiet_NaN()};
+    if (!fitted.free) continue;
+    double furthest = 0;  // in standard errors
+    std::size_t channel = 0;
+    for (std::size_t c = 0; c < fitted.values.size(); ++c) {
+      const double clustered = fitted.standard_error_clustered[c];
+      const double sigma = std::max(fitted.standard_error[c], std::isnan(clustered) ? 0.0 : clustered);
+      const double gap = std::fabs(values[i][c] - fitted.values[c]);
+      if (!(gap > kSigmas * sigma)) continue;
+      if (gap / sigma > furthest) furthest = gap / sigma, channel = c;
+      fitted.standard_error[c] = fitted.standard_error_clustered[c] = fitted.freedom[c] =
+          std::numeric_limits<double>::quiet_NaN();
+    }
+    if (furthest == 0) continue;
+    words.push_back(fmt::format("{}{} {:.4g} in place of {:.4g}", parameters[i].json_name,
+                                parameters[i].per_channel ? "[" + material->channels[channel] + "]" : "",
+                                values[i][channel] / InsideFactor(parameters[i]),
+                                fitted.values[channel] / InsideFactor(parameters[i])));
   }
   return fmt::format("{}", fmt::join(words, ", "));
 }
@@ -127,17 +145,22 @@ bool FlagRivals(const Problem& problem, const Layout& layout, const Samples& sam
   const Solution& best = minima[0].solution;
   const double as_good = AsGood(problem, layout, best, *material);
   std::vector<std::string> found;
+  std::optional<Neighbourhood> around_image;
   if (const std::optional<double> plane = PlaneAzimuth(samples)) {
     const std::vector<double> image = MirrorImage(layout, best.u, *plane);
     if (problem.Sum(layout.ToKernel(image.data()), false, pool).sum_rho / 2 <= as_good) {
-      if (const std::string words = Differences(layout, image, material); !words.empty())
+      if (const std::string words = Differences(layout, image, material); !words.empty()) {
         found.push_back("all samples lie in one plane, and the mirror image of the solution fits as well: " + words);
+        around_image.emplace(problem, layout, image, pool);
+      }
     }
   }
   for (std::size_t k = 1; k < minima.size(); ++k) {
     const Solution& rival = minima[k].solution;
     if (!minima[k].on_all_samples || !rival.converged || rival.cost > as_good) continue;
-    if (const std::string words = Differences(layout, rival.u, material); !words.empty())
+    if (around_image && around_image->Holds(rival.u)) continue;
+    const std::vector<double> nearest = layout.NearestEquivalent(rival.u, best.u);
+    if (const std::string words = Differences(layout, nearest, material); !words.empty())
       found.push_back("a second minimum fits as well: " + words);
   }
   material->degenerate.insert(material->degenerate.end(), found.begin(), found.end());

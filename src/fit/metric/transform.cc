@@ -127,8 +127,9 @@ struct RelativeCurve {
     return hn::Div(hn::Sub(f, m), m);
   }
   HWY_INLINE V64 InverseSlope(V64 v) const { return v; }
-  // f / m, not T(f), is what noise in m bends: the mean of v / (v + noise) is 1 + s^2 / v^2.
-  HWY_INLINE V64 Curvature(V64 v) const { return hn::Div(hn::Div(Constant(-2), v), v); }
+  // f / m, not T(f), is what noise in m bends, and the slope 1 / m with it: where f = v the mean of (f / m - 1) v / m
+  // is 2 s^2 / v^2.
+  HWY_INLINE V64 Curvature(V64 v) const { return hn::Div(hn::Div(Constant(-4), v), v); }
 };
 
 struct AsinhCurve {

@@ -48,8 +48,8 @@ void ApplyTransform(const Transform& transform, const double* f_r, const double*
 // the standard deviation s, is (to / s)^2.
 void InverseSlopes(const Transform& transform, const double* f, const double* cos_i, std::size_t count, double* to);
 
-// T''(v) as it acts on the mean of a residual: noise of standard deviation s about v moves T(measured) by T''(v) s^2
-// / 2. Of kAsinh what mean_shift leaves, 0.
+// T''(v) as it acts on the mean of a residual times its slope over the slope at v: noise of standard deviation s about
+// v moves T(measured) by T''(v) s^2 / 2. Of kAsinh what mean_shift leaves, 0.
 void Curvatures(const Transform& transform, const double* f, const double* cos_i, std::size_t count, double* to);
 
 }  // namespace lobefit

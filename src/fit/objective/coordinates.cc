@@ -192,6 +192,16 @@ Ellipsoid Layout::EllipsoidAt(const Shape& shape, const double* u) const {
   return ellipsoid;
 }
 
+void Layout::SetEllipsoid(const Shape& shape, const Ellipsoid& ellipsoid, std::vector<double>* u) const {
+  Ellipsoid entries = ellipsoid;
+  const SlopeCoordinates slope = shape.slope ? SlopeCoordinatesFromEllipsoid(ellipsoid) : SlopeCoordinates();
+  for (std::size_t k = 0; k < shape.entries.size(); ++k) {
+    const int i = shape.entries[k];
+    const double entry = *Entry(&entries, i);
+    (*u)[shape.first + k] = shape.slope ? slope.v[i] : (i < 2 ? std::log(entry) : entry);
+  }
+}
+
 SlopeCoordinates Layout::SlopeAt(const Shape& shape, const double* u) const {
   SlopeCoordinates slope;
   for (std::size_t k = 0; k < shape.entries.size(); ++k) slope.v[shape.entries[k]] = u[shape.first + k];
@@ -263,13 +273,7 @@ KernelModel Layout::ToKernel(const double* u) const {
 std::vector<double> Layout::FromShapes(const std::vector<Ellipsoid>& shapes) const {
   std::vector<double> u(size(), 0.0);
   for (std::size_t l = 0; l < shapes_.size(); ++l) {
-    Ellipsoid ellipsoid = shapes[l];
-    const SlopeCoordinates slope = SlopeCoordinatesFromEllipsoid(ellipsoid);
-    for (std::size_t k = 0; k < shapes_[l].entries.size(); ++k) {
-      const int i = shapes_[l].entries[k];
-      const double entry = *Entry(&ellipsoid, i);
-      u[shapes_[l].first + k] = shapes_[l].slope ? slope.v[i] : (i < 2 ? std::log(entry) : entry);
-    }
+    SetEllipsoid(shapes_[l], shapes[l], &u);
     for (std::size_t k = 0; k < shapes_[l].profile.size(); ++k) {
       const double start = shapes_[l].profile_start[shapes_[l].profile[k]];
       u[shapes_[l].first + shapes_[l].entries.size() + k] = IsGamma(l) ? std::log(start - kLeastGamma) : start;
@@ -299,10 +303,9 @@ std::vector<int> Layout::CoordinatesOfColumns(std::size_t c) const {
   return index;
 }
 
-void Layout::Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const {
-  const auto n = static_cast<Eigen::Index>(size());
-  hessian->setZero(n, n);
-  gradient->setZero(n);
+template <class Add>
+void Layout::GatherEntries(const KernelSums& sums, const Add& add, Eigen::VectorXd* gradient) const {
+  gradient->setZero(static_cast<Eigen::Index>(size()));
   for (std::size_t c = 0; c < channels_; ++c) {
     // -2 for the residual.
     std::vector<int> index = CoordinatesOfColumns(c);
@@ -314,18 +317,50 @@ void Layout::Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::Vec
         if (index[j] == -2) {
           (*gradient)(index[i]) += *entry;
         } else if (index[j] >= 0) {
-          (*hessian)(index[i], index[j]) += *entry;
-          // A shared amplitude may meet itself in one channel only on the diagonal.
-          if (i != j) (*hessian)(index[j], index[i]) += *entry;
+          add(c, index[i], index[j], *entry);
         }
       }
     }
   }
   for (std::size_t k = 0; k < sums.prior_slope.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    (*hessian)(i, i) += sums.prior_curvature[k];
-    (*gradient)(i) += sums.prior_slope[k];
+    if (sums.prior_curvature[k] != 0) add(0, static_cast<int>(k), static_cast<int>(k), sums.prior_curvature[k]);
+    (*gradient)(static_cast<Eigen::Index>(k)) += sums.prior_slope[k];
   }
+}
+
+void Layout::Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const {
+  hessian->setZero(static_cast<Eigen::Index>(size()), static_cast<Eigen::Index>(size()));
+  const auto add = [hessian](std::size_t, int i, int j, double value) {
+    (*hessian)(i, j) += value;
+    // A shared amplitude may meet itself in one channel only on the diagonal.
+    if (i != j) (*hessian)(j, i) += value;
+  };
+  GatherEntries(sums, add, gradient);
+}
+
+void Layout::Gather(const KernelSums& sums, ArrowMatrix* hessian, Eigen::VectorXd* gradient) const {
+  *hessian = ArrowMatrix(ArrowShapeOf(*this));
+  // Place of each coordinate in its part; below 0: in the border, from -1 on.
+  std::vector<Eigen::Index> place(size());
+  const ArrowShape& shape = hessian->shape;
+  for (std::size_t k = 0; k < shape.border.size(); ++k)
+    place[static_cast<std::size_t>(shape.border[k])] = -1 - static_cast<Eigen::Index>(k);
+  for (const std::vector<int>& own : shape.own) {
+    for (std::size_t k = 0; k < own.size(); ++k) place[static_cast<std::size_t>(own[k])] = static_cast<Eigen::Index>(k);
+  }
+  const auto add = [hessian, &place](std::size_t c, int i, int j, double value) {
+    const Eigen::Index p = place[static_cast<std::size_t>(i)], q = place[static_cast<std::size_t>(j)];
+    if (p >= 0 && q >= 0) {
+      hessian->own[c](p, q) += value;
+      if (i != j) hessian->own[c](q, p) += value;
+    } else if (p < 0 && q < 0) {
+      hessian->border(-1 - p, -1 - q) += value;
+      if (i != j) hessian->border(-1 - q, -1 - p) += value;
+    } else {
+      hessian->across[c](p < 0 ? -1 - p : -1 - q, p < 0 ? q : p) += value;
+    }
+  };
+  GatherEntries(sums, add, gradient);
 }
 
 std::vector<std::vector<double>> Layout::GatherScores(const std::vector<std::vector<double>>& scores) const {

@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "lobefit/fit/objective/arrow.h"
 #include "lobefit/fit/objective/kernel.h"
 #include "lobefit/recipe/recipe.h"
 
@@ -57,12 +58,20 @@ class Layout {
   // The coordinates of profiles, from one point to another.
   void CopyProfiles(const std::vector<double>& from, std::vector<double>* to) const;
 
+  // Whether two lobes exchange without another model: of one kind, with the same bounds and fixed values.
+  bool AreInterchangeable(std::size_t lobe, std::size_t other) const;
+  // The point that describes the same material as `u` and is nearest to `to`: lobes of one kind are interchangeable,
+  // the axes of an ellipsoid too, and half a turn of them changes nothing. It may lie beyond bounds of angles.
+  std::vector<double> NearestEquivalent(const std::vector<double>& u, const std::vector<double>& to) const;
+
   // Coordinate of each column of channel `c` of the kernel, the residual's left out; -1: a fixed parameter, or the
   // gain.
   std::vector<int> CoordinatesOfColumns(std::size_t c) const;
 
   // Gauss-Newton matrix J^T J and gradient J^T r in solver coordinates from the sums over samples.
   void Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
+  // The same, linear in the channels.
+  void Gather(const KernelSums& sums, ArrowMatrix* hessian, Eigen::VectorXd* gradient) const;
   // Scores of the kernel (shape columns, then [channel][linear]) as scores of the solver's coordinates, arrays by
   // coordinate.
   std::vector<std::vector<double>> GatherScores(const std::vector<std::vector<double>>& scores) const;
@@ -97,6 +106,10 @@ class Layout {
     std::size_t columns() const { return entries.size() + profile.size(); }
   };
 
+  // Calls add(channel, i, j, value) for each entry of the upper triangles of the channels, and of the priors (of shapes),
+  // that is one of J^T J, and sums up the gradient.
+  template <class Add>
+  void GatherEntries(const KernelSums& sums, const Add& add, Eigen::VectorXd* gradient) const;
   void AddShape(std::size_t lobe, const std::vector<Parameter>& parameters, std::size_t first_parameter);
   void AddProfile(std::size_t lobe, const std::vector<Parameter>& parameters, Shape* shape);
   // The mean over the recipe's aperture, and bounds that keep the lobe as wide as its cubature can take.
@@ -111,6 +124,9 @@ class Layout {
     return linear.index < 0 ? linear.value : u[linear.index];
   }
   Ellipsoid EllipsoidAt(const Shape& shape, const double* u) const;
+  void SetEllipsoid(const Shape& shape, const Ellipsoid& ellipsoid, std::vector<double>* u) const;
+  // Those of the lobe's shape, then of its Fresnel parameters channel by channel; -1: fixed.
+  std::vector<int> CoordinatesOfLobe(std::size_t lobe) const;
   SlopeCoordinates SlopeAt(const Shape& shape, const double* u) const;
 
   Recipe recipe_;

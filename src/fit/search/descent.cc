@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -21,23 +22,41 @@ constexpr int kMaxRounds = 8;
 // Half the squares that rounding leaves of exact values.
 double Rounding(const BoundedObjective& objective) { return 0.5e-24 * static_cast<double>(objective.residuals); }
 
+double Evaluate(const BoundedObjective& objective, const Eigen::VectorXd& u, Eigen::MatrixXd* gram,
+                Eigen::VectorXd* gradient) {
+  return objective.evaluate(u, gram, gradient);
+}
+double Evaluate(const BoundedObjective& objective, const Eigen::VectorXd& u, ArrowMatrix* gram,
+                Eigen::VectorXd* gradient) {
+  return objective.evaluate_arrow(u, gram, gradient);
+}
+
+Eigen::VectorXd DiagonalOf(const Eigen::MatrixXd& gram) { return gram.diagonal(); }
+Eigen::VectorXd DiagonalOf(const ArrowMatrix& gram) { return gram.Diagonal(); }
+void AddToDiagonal(const Eigen::VectorXd& values, Eigen::MatrixXd* gram) { gram->diagonal() += values; }
+void AddToDiagonal(const Eigen::VectorXd& values, ArrowMatrix* gram) { gram->AddToDiagonal(values); }
+bool AllFinite(const Eigen::MatrixXd& gram) { return gram.allFinite(); }
+bool AllFinite(const ArrowMatrix& gram) { return gram.AllFinite(); }
+
 // Marquardt's damping, by the diagonal of J^T J; steps are the minima of the damped model within the box. From a point
 // whose cost, gram and gradient are known.
-void DescendPlainly(const BoundedObjective& objective, const DescentOptions& options, Descent* at) {
-  Eigen::MatrixXd damped, gram;
+template <class Gram>
+void DescendPlainly(const BoundedObjective& objective, const DescentOptions& options, Descent* at, Gram* at_gram) {
+  Gram damped, gram;
   Eigen::VectorXd gradient;
   double damping = 1e-3, growth = 2;
   while (at->iterations < options.max_iterations && damping < 1e12) {
     ++at->iterations;
-    damped = at->gram;
-    const double floor = options.damping_floor * std::max(at->gram.diagonal().maxCoeff(), 1e-300);
-    damped.diagonal().array() += damping * at->gram.diagonal().array().max(floor) + floor + 1e-300;
+    damped = *at_gram;
+    const Eigen::VectorXd diagonal = DiagonalOf(*at_gram);
+    const double floor = options.damping_floor * std::max(diagonal.maxCoeff(), 1e-300);
+    AddToDiagonal((damping * diagonal.array().max(floor) + floor + 1e-300).matrix(), &damped);
     const Eigen::VectorXd step = BoundedStep(damped, at->gradient, objective.low - at->u, objective.high - at->u);
     const Eigen::VectorXd tried = (at->u + step).cwiseMax(objective.low).cwiseMin(objective.high);
-    const double cost = objective.evaluate(tried, &gram, &gradient);
+    const double cost = Evaluate(objective, tried, &gram, &gradient);
     // A small decrease under strong damping says nothing of the minimum.
     const bool free = damping <= 1;
-    if (!(cost < at->cost) || !gram.allFinite()) {
+    if (!(cost < at->cost) || !AllFinite(gram)) {
       if (free && -step.dot(at->gradient) <= options.function_tolerance * at->cost) break;
       damping *= growth;
       growth *= 2;
@@ -46,12 +65,62 @@ void DescendPlainly(const BoundedObjective& objective, const DescentOptions& opt
     const bool last = free && at->cost - cost <= options.function_tolerance * at->cost;
     at->u = tried;
     at->cost = cost;
-    at->gram.swap(gram);
+    std::swap(*at_gram, gram);
     at->gradient.swap(gradient);
     if (last) break;
     damping = std::max(damping / 5, 1e-12);
     growth = 2;
   }
+}
+
+// GainOf by the diagonal entry of the Gauss-Newton matrix.
+double GainBy(const BoundedObjective& objective, const Eigen::VectorXd& u, double cost, double curvature,
+              const Eigen::VectorXd& gradient, Eigen::Index k) {
+  if (IsHeld(objective, u, gradient, k) || !(curvature > 0) || cost <= Rounding(objective)) return 0;
+  // No further than to its bound.
+  const double step = std::clamp(u(k) - gradient(k) / curvature, objective.low(k), objective.high(k)) - u(k);
+  return -step * (gradient(k) + 0.5 * curvature * step) / cost;
+}
+
+bool IsMinimumBy(const BoundedObjective& objective, const Eigen::VectorXd& u, double cost,
+                 const Eigen::VectorXd& diagonal, const Eigen::VectorXd& gradient, double tolerance,
+                 Eigen::VectorXd* better) {
+  const double least = std::max(10 * tolerance, kGainOfStandardError / static_cast<double>(objective.residuals));
+  for (Eigen::Index k = 0; k < u.size(); ++k) {
+    if (GainBy(objective, u, cost, diagonal(k), gradient, k) <= least) continue;
+    for (const double share : {1.0, 0.1, 0.01, 0.001}) {
+      Eigen::VectorXd tried = u;
+      tried(k) = std::clamp(u(k) - share * gradient(k) / diagonal(k), objective.low(k), objective.high(k));
+      if (!(objective.evaluate(tried, nullptr, nullptr) < cost * (1 - least))) continue;
+      if (better != nullptr) *better = tried;
+      return false;
+    }
+  }
+  return true;
+}
+
+// Descends from `at` in rounds, with J^T J as `gram`; `steps` takes it from the point on.
+template <class Gram, class Steps>
+void DescendInRounds(const BoundedObjective& objective, const DescentOptions& options, const Steps& steps, Gram* gram,
+                     Descent* at) {
+  at->cost = Evaluate(objective, at->u, gram, &at->gradient);
+  if (!std::isfinite(at->cost) || !AllFinite(*gram) || !at->gradient.allFinite()) {
+    at->cost = std::numeric_limits<double>::infinity();
+    at->message = "the start has no finite cost";
+    return;
+  }
+  for (int round = 0; round < kMaxRounds && at->iterations < options.max_iterations; ++round) {
+    steps();
+    Eigen::VectorXd better;
+    at->converged =
+        std::isfinite(at->cost) && AllFinite(*gram) && at->gradient.allFinite() &&
+        IsMinimumBy(objective, at->u, at->cost, DiagonalOf(*gram), at->gradient, options.function_tolerance, &better);
+    if (at->converged || better.size() == 0) break;
+    at->u = better;
+    at->cost = Evaluate(objective, at->u, gram, &at->gradient);
+  }
+  if (!at->converged)
+    at->message = "the cost still falls where the descent ended" + (at->message.empty() ? "" : ": " + at->message);
 }
 
 }  // namespace
@@ -63,52 +132,32 @@ bool IsHeld(const BoundedObjective& objective, const Eigen::VectorXd& u, const E
 
 double GainOf(const BoundedObjective& objective, const Eigen::VectorXd& u, double cost, const Eigen::MatrixXd& gram,
               const Eigen::VectorXd& gradient, Eigen::Index k) {
-  if (IsHeld(objective, u, gradient, k) || !(gram(k, k) > 0) || cost <= Rounding(objective)) return 0;
-  // No further than to its bound.
-  const double step = std::clamp(u(k) - gradient(k) / gram(k, k), objective.low(k), objective.high(k)) - u(k);
-  return -step * (gradient(k) + 0.5 * gram(k, k) * step) / cost;
+  return GainBy(objective, u, cost, gram(k, k), gradient, k);
 }
 
 bool IsMinimum(const BoundedObjective& objective, const Eigen::VectorXd& u, double cost, const Eigen::MatrixXd& gram,
                const Eigen::VectorXd& gradient, double tolerance, Eigen::VectorXd* better) {
-  if (!std::isfinite(cost) || !gram.allFinite() || !gradient.allFinite()) return false;
-  const double least = std::max(10 * tolerance, kGainOfStandardError / static_cast<double>(objective.residuals));
-  for (Eigen::Index k = 0; k < u.size(); ++k) {
-    if (GainOf(objective, u, cost, gram, gradient, k) <= least) continue;
-    for (const double share : {1.0, 0.1, 0.01, 0.001}) {
-      Eigen::VectorXd tried = u;
-      tried(k) = std::clamp(u(k) - share * gradient(k) / gram(k, k), objective.low(k), objective.high(k));
-      if (!(objective.evaluate(tried, nullptr, nullptr) < cost * (1 - least))) continue;
-      if (better != nullptr) *better = tried;
-      return false;
-    }
-  }
-  return true;
+  return std::isfinite(cost) && gram.allFinite() && gradient.allFinite() &&
+         IsMinimumBy(objective, u, cost, gram.diagonal(), gradient, tolerance, better);
 }
 
 Descent Descend(const BoundedObjective& objective, const Eigen::VectorXd& start, const DescentOptions& options) {
   Descent at;
   at.u = start.cwiseMax(objective.low).cwiseMin(objective.high);
-  at.cost = objective.evaluate(at.u, &at.gram, &at.gradient);
-  if (!std::isfinite(at.cost) || !at.gram.allFinite() || !at.gradient.allFinite()) {
-    at.cost = std::numeric_limits<double>::infinity();
-    at.message = "the start has no finite cost";
+  if (objective.evaluate_arrow) {
+    ArrowMatrix gram;
+    DescendInRounds(
+        objective, options, [&] { DescendPlainly(objective, options, &at, &gram); }, &gram, &at);
     return at;
   }
-  for (int round = 0; round < kMaxRounds && at.iterations < options.max_iterations; ++round) {
+  const auto steps = [&] {
     if (options.use_ceres) {
       DescendWithCeres(objective, options, &at);
     } else {
-      DescendPlainly(objective, options, &at);
+      DescendPlainly(objective, options, &at, &at.gram);
     }
-    Eigen::VectorXd better;
-    at.converged = IsMinimum(objective, at.u, at.cost, at.gram, at.gradient, options.function_tolerance, &better);
-    if (at.converged || better.size() == 0) break;
-    at.u = better;
-    at.cost = objective.evaluate(at.u, &at.gram, &at.gradient);
-  }
-  if (!at.converged)
-    at.message = "the cost still falls where the descent ended" + (at.message.empty() ? "" : ": " + at.message);
+  };
+  DescendInRounds(objective, options, steps, &at.gram, &at);
   return at;
 }
 

@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "lobefit/fit/objective/arrow.h"
+
 namespace lobefit {
 
 // A sum of squares over a box.
@@ -16,6 +18,9 @@ struct BoundedObjective {
   // Half the sum of squares at a point within the box; with `gram` and `gradient` (both or none) also J^T J and J^T r.
   std::function<double(const Eigen::VectorXd& u, Eigen::MatrixXd* gram, Eigen::VectorXd* gradient)> evaluate;
   std::size_t residuals = 1;  // their number: what is left of exact values is rounding, 1e-12 on average
+  // The same with J^T J as an arrow; may be empty. Where it is there, descents take plain steps through it
+  // (DescentOptions::use_ceres does not count) and leave Descent::gram empty: linear in the channels, not cubic.
+  std::function<double(const Eigen::VectorXd& u, ArrowMatrix* gram, Eigen::VectorXd* gradient)> evaluate_arrow;
 };
 
 struct DescentOptions {
@@ -60,6 +65,9 @@ bool IsMinimum(const BoundedObjective& objective, const Eigen::VectorXd& u, doub
 // min 1/2 x^T H x + g^T x with low <= x <= high, by an active set: what leaves its bounds is held there. A coordinate
 // without curvature stays at 0.
 Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
+                            const Eigen::VectorXd& high);
+// The same of an arrow, by the Schur complement of the channels' own blocks. A coordinate with low = high is held.
+Eigen::VectorXd BoundedStep(const ArrowMatrix& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
                             const Eigen::VectorXd& high);
 
 }  // namespace lobefit

@@ -21,31 +21,6 @@ constexpr double kMiddleTolerance = 1e-7, kTolerance = 1e-8;
 // Descents of a model with several lobes, for each one of a model with one: two lobes have 36 pairs of start widths.
 constexpr std::size_t kDescentsOfSeveral = 5;
 
-// Two descents ended in the same minimum where their costs agree to a relative 1e-5 (the subsample's descents end at
-// 1e-12), or where both are nothing but rounding: residuals of 1e-12 on average. With so many residuals that 1e-5 is
-// more than noise explains (1.92 variances, 95 % of chi-square) the cost must agree to a tenth of that.
-bool SameCost(double a, double b, std::size_t residuals) {
-  const double n = static_cast<double>(residuals);
-  return std::fabs(a - b) <= std::min(1e-5, 0.4 / n) * std::max(a, b) + 1e-24 * n;
-}
-
-// Sorts by cost and joins equal ones.
-void JoinEqual(std::size_t residuals, std::vector<DistinctMinimum>* minima) {
-  std::erase_if(*minima, [](const DistinctMinimum& m) { return !std::isfinite(m.solution.cost); });
-  std::stable_sort(minima->begin(), minima->end(), [](const DistinctMinimum& a, const DistinctMinimum& b) {
-    return a.solution.cost < b.solution.cost;
-  });
-  std::vector<DistinctMinimum> distinct;
-  for (const DistinctMinimum& minimum : *minima) {
-    if (!distinct.empty() && SameCost(distinct.back().solution.cost, minimum.solution.cost, residuals)) {
-      distinct.back().starts += minimum.starts;
-    } else {
-      distinct.push_back(minimum);
-    }
-  }
-  *minima = distinct;
-}
-
 // Descends from the best-ranked starts.
 std::vector<DistinctMinimum> Descend(const Problem& problem, const Layout& layout, const Samples& samples,
                                      const FitOptions& options, ThreadPool* pool) {
@@ -62,11 +37,11 @@ std::vector<DistinctMinimum> Descend(const Problem& problem, const Layout& layou
   const bool scout = options.scouting_steps > 0 && starts.size() > kScoutsKept;
   pool->Run(starts.size(), [&](std::size_t k) { descend(k, starts[k].u, scout ? scouting : SolveOptions()); });
   if (scout) {
-    JoinEqual(problem.size() * problem.channels(), &minima);
+    JoinFoundAgain(problem, layout, pool, &minima);
     if (minima.size() > kScoutsKept) minima.resize(kScoutsKept);
     pool->Run(minima.size(), [&](std::size_t k) { descend(k, minima[k].solution.u, {}); });
   }
-  JoinEqual(problem.size() * problem.channels(), &minima);
+  JoinFoundAgain(problem, layout, pool, &minima);
   return minima;
 }
 
@@ -105,7 +80,7 @@ void Refine(const Problem& problem, const Layout& layout, std::size_t most, doub
   // Costs of different subsamples compare roughly only: those that were refined come first.
   std::vector<DistinctMinimum> first(minima->begin(), minima->begin() + static_cast<std::ptrdiff_t>(refined)),
       rest(minima->begin() + static_cast<std::ptrdiff_t>(refined), minima->end());
-  JoinEqual(problem.size() * problem.channels(), &first);
+  JoinFoundAgain(problem, layout, pool, &first);
   first.insert(first.end(), rest.begin(), rest.end());
   *minima = first;
 }
@@ -148,7 +123,7 @@ void DescendReweighted(const Layout& layout, ThreadPool* pool, Problem* problem,
     if (k > 0 && minimum.on_all_samples) descend(&minimum.solution);
     (minimum.on_all_samples ? refined : rest).push_back(minimum);
   }
-  JoinEqual(problem->size() * problem->channels(), &refined);
+  JoinFoundAgain(*problem, layout, pool, &refined);
   refined.insert(refined.end(), rest.begin(), rest.end());
   *minima = refined;
 }

@@ -5,19 +5,11 @@
 
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/search/distinct.h"
 #include "lobefit/fit/search/fit_options.h"
-#include "lobefit/fit/search/solve.h"
 #include "lobefit/measurement/measurement.h"
 
 namespace lobefit {
-
-struct DistinctMinimum {
-  Solution solution;
-  std::size_t starts = 1;   // descents that ended here
-  std::size_t samples = 0;  // on how many samples it was last descended
-  // Solution::cost is on all samples; false: scaled from fewer.
-  bool on_all_samples = true;
-};
 
 // Distinct minima, the best first; it alone is sure to be descended on all samples. Empty where no start has a finite
 // cost. `problem` holds all of `samples`.

@@ -22,6 +22,13 @@ double Linearise(const Problem& problem, const Layout& layout, const double* u, 
   return cost;
 }
 
+double Linearise(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool, ArrowMatrix* hessian,
+                 Eigen::VectorXd* gradient) {
+  const KernelSums sums = problem.Sum(layout.ToKernel(u), true, pool);
+  layout.Gather(sums, hessian, gradient);
+  return sums.sum_rho / 2;
+}
+
 BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, ThreadPool* pool) {
   const auto n = static_cast<Eigen::Index>(layout.size());
   BoundedObjective objective;
@@ -40,6 +47,12 @@ BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, Threa
     if (problem.energy() == nullptr) return cost;
     return cost + problem.energy()->Add(layout, u.data(), pool, nullptr, nullptr);
   };
+  if (layout.size() >= kManyCoordinates && problem.gains() == nullptr && problem.energy() == nullptr) {
+    objective.evaluate_arrow = [&problem, &layout, pool](const Eigen::VectorXd& u, ArrowMatrix* gram,
+                                                         Eigen::VectorXd* gradient) {
+      return Linearise(problem, layout, u.data(), pool, gram, gradient);
+    };
+  }
   return objective;
 }
 

@@ -36,6 +36,12 @@ Solution Solve(const Problem& problem, const Layout& layout, const std::vector<d
 double Linearise(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool,
                  Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient, std::vector<GainLink>* links = nullptr);
 
+// The same as an arrow, without gains and energy rule, which couple the channels.
+double Linearise(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool, ArrowMatrix* hessian,
+                 Eigen::VectorXd* gradient);
+// From so many coordinates on, descents of what is an arrow go through it: a dense step takes their cube.
+inline constexpr std::size_t kManyCoordinates = 64;
+
 // The problem over the box of the layout's bounds; all arguments must outlive it.
 BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, ThreadPool* pool);
 

@@ -48,6 +48,7 @@ std::vector<Ellipsoid> WithGivenStarts(std::vector<Ellipsoid> candidates, const 
       const std::vector<double>& start = recipe.parameters[FirstParameter(recipe.model, lobe) + i].start;
       if (!start.empty()) *entries[i] = start[0];
     }
+    if (IsRound(recipe.model.lobes[lobe].ndf)) shape.alpha_y = shape.alpha_x;
     const bool seen = std::any_of(distinct.begin(), distinct.end(), [&](const Ellipsoid& other) {
       return other.alpha_x == shape.alpha_x && other.alpha_y == shape.alpha_y && other.theta_x == shape.theta_x &&
              other.theta_y == shape.theta_y && other.theta_z == shape.theta_z;
@@ -55,11 +56,6 @@ std::vector<Ellipsoid> WithGivenStarts(std::vector<Ellipsoid> candidates, const 
     if (!seen) distinct.push_back(shape);
   }
   return distinct;
-}
-
-bool SameKind(const Lobe& a, const Lobe& b) {
-  return a.ndf == b.ndf && a.masking == b.masking && a.fresnel == b.fresnel && a.metal == b.metal &&
-         a.direction == b.direction && GridOf(a) == GridOf(b);
 }
 
 }  // namespace
@@ -135,22 +131,19 @@ std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double p
 }
 
 double SolveLinear(const Problem& problem, const Layout& layout, std::vector<double>* u, ThreadPool* pool) {
-  Eigen::MatrixXd hessian;
+  ArrowMatrix hessian;
   Eigen::VectorXd gradient;
   const double cost = Linearise(problem, layout, u->data(), pool, &hessian, &gradient);
-  const auto first = static_cast<Eigen::Index>(layout.shape_size());
-  const Eigen::Index n = gradient.size() - first;
-  if (n == 0 || !hessian.allFinite() || !gradient.allFinite()) return cost;
-  Eigen::VectorXd low(n), high(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(first + i);
-    low(i) = layout.coordinates()[k].low - (*u)[k];
-    high(i) = layout.coordinates()[k].high - (*u)[k];
+  if (layout.size() == layout.shape_size() || !hessian.AllFinite() || !gradient.allFinite()) return cost;
+  Eigen::VectorXd low = Eigen::VectorXd::Zero(gradient.size()), high = low;  // shapes stay
+  for (std::size_t k = layout.shape_size(); k < layout.size(); ++k) {
+    low(static_cast<Eigen::Index>(k)) = layout.coordinates()[k].low - (*u)[k];
+    high(static_cast<Eigen::Index>(k)) = layout.coordinates()[k].high - (*u)[k];
   }
-  const Eigen::VectorXd step = BoundedStep(hessian.bottomRightCorner(n, n), gradient.tail(n), low, high);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(first + i);
-    (*u)[k] = std::clamp((*u)[k] + step(i), layout.coordinates()[k].low, layout.coordinates()[k].high);
+  const Eigen::VectorXd step = BoundedStep(hessian, gradient, low, high);
+  for (std::size_t k = layout.shape_size(); k < layout.size(); ++k) {
+    (*u)[k] = std::clamp((*u)[k] + step(static_cast<Eigen::Index>(k)), layout.coordinates()[k].low,
+                         layout.coordinates()[k].high);
   }
   return problem.Sum(layout.ToKernel(u->data()), false, pool).sum_rho / 2;
 }
@@ -167,10 +160,10 @@ std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, co
     const std::vector<Ellipsoid> candidates = WithGivenStarts(shapes, recipe, l);
     for (const std::vector<Ellipsoid>& tuple : tuples) {
       for (const Ellipsoid& shape : candidates) {
-        // Lobes of one kind are interchangeable: narrower ones first; and of several lobes only isotropic candidates
+        // Of interchangeable lobes narrower ones first; and of several lobes only isotropic candidates
         // are combined.
         const bool given = !recipe.parameters[FirstParameter(recipe.model, l)].start.empty();
-        const bool same = l > 0 && SameKind(recipe.model.lobes[l - 1], recipe.model.lobes[l]);
+        const bool same = l > 0 && layout.AreInterchangeable(l - 1, l);
         if (!given && !tuple.empty() &&
             (same ? shape.alpha_x <= tuple.back().alpha_x : shape.alpha_x == tuple.back().alpha_x))
           continue;

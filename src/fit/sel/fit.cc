@@ -143,6 +143,7 @@ Material FitSel(const Recipe& wanted, const FitOptions& options, Measurement* me
   material.channels = measurement->channels.names;
   if (sel.bound) RaiseAboveSamples(*measurement, &pool, &material);
   Describe(recipe, *measurement, nodes, &pool, &material);
+  material.used = {ToToml(wanted), options.starts, options.seed, options.scouting_steps, {}};
   material.timings_s = {{"read", 0.0}, {"report", 0.0}};
   material.timings_s["fit"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
   return material;

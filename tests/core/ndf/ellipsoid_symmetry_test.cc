@@ -44,6 +44,26 @@ TEST(EllipsoidSymmetry, LeavesDUnchanged) {
   }
 }
 
+TEST(EllipsoidSymmetry, TheNearestFormOfAnEllipsoidIsItself) {
+  ShapeGenerator random(66);
+  for (int i = 0; i < 500; ++i) {
+    const Ellipsoid e = random.Moderate();
+    const Ellipsoid turned = {e.alpha_x, e.alpha_y, -e.theta_x, -e.theta_y, e.theta_z + kPi};
+    for (Ellipsoid other : {e, turned, SwapAxes(e), SwapAxes(turned)}) {
+      other.theta_z += 2 * kPi * static_cast<double>(random.Index(5) - 2);
+      const Ellipsoid nearest = NearestEllipsoid(other, e);
+      EXPECT_NEAR(nearest.alpha_x, e.alpha_x, 1e-15);
+      EXPECT_NEAR(nearest.alpha_y, e.alpha_y, 1e-15);
+      EXPECT_NEAR(nearest.theta_x, e.theta_x, 1e-13);
+      EXPECT_NEAR(nearest.theta_y, e.theta_y, 1e-13);
+      EXPECT_NEAR(nearest.theta_z, e.theta_z, 1e-13);
+    }
+    // Of anything else it is some form of that.
+    const Ellipsoid else_where = random.Moderate();
+    ExpectSameDistribution(else_where, NearestEllipsoid(else_where, e), &random, 1e-11);
+  }
+}
+
 TEST(EllipsoidSymmetry, HostileShapes) {
   ShapeGenerator random(62);
   for (int i = 0; i < 1000; ++i) {

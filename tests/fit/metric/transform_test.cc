@@ -224,7 +224,9 @@ TEST(Curvatures, AreTheSecondDerivativesOfWhatNoiseBends) {
                     Definition(transform.curve, v - h)) /
                    (h * h);
       }
-      if (transform.curve == Curve::kRelative) expected = -(v / (v + h) - 2 + v / (v - h)) / (h * h);
+      // (f / m - 1) / m at f = v, over the slope 1 / v.
+      const auto pull = [v](long double m) { return (v / m - 1) * v / m; };
+      if (transform.curve == Curve::kRelative) expected = -(pull(v + h) + pull(v - h)) / (h * h);
       EXPECT_NEAR(One(Curvatures, transform, v), static_cast<double>(expected),
                   1e-6 * static_cast<double>(std::fabs(expected)));
     }

@@ -74,8 +74,8 @@ class GltfReader {
     material.roughness.roughness = Factor(pbr, "roughnessFactor", 1);
     material.roughness.anisotropy = Factor(anisotropy, "anisotropyStrength", 0);
     material.rotation = Real(anisotropy, "anisotropyRotation", 0);
-    material.clearcoat = Real(clearcoat, "clearcoatFactor", 0);
-    material.clearcoat_roughness = Real(clearcoat, "clearcoatRoughnessFactor", 0);
+    material.clearcoat = Factor(clearcoat, "clearcoatFactor", 0);
+    material.clearcoat_roughness = Factor(clearcoat, "clearcoatRoughnessFactor", 0);
     material.ior = Real(ior, "ior", 1.5);
     material.specular = Factor(specular, "specularFactor", 1);
     material.specular_color = Color(specular, "specularColorFactor", 3, {1, 1, 1});
