@@ -151,9 +151,10 @@ void ReportByFile(const FileErrors& errors, Material* material) {
     for (std::size_t c = 0; c < fitted.values.size(); ++c, ++row) {
       const bool has_error =
           fitted.free && !std::isnan(fitted.standard_error[std::min(c, fitted.standard_error.size() - 1)]);
-      const double error = has_error ? SquareRoot(errors.variance[row]) : kNan;
-      const double ratio =
-          error / fitted.standard_error_clustered[std::min(c, fitted.standard_error_clustered.size() - 1)];
+      const double clustered = fitted.standard_error_clustered[std::min(c, fitted.standard_error_clustered.size() - 1)];
+      // Those by incidence hold what the noise biases the metric by.
+      const double error = has_error ? std::max(SquareRoot(errors.variance[row]), clustered) : kNan;
+      const double ratio = error / clustered;
       fitted.standard_error_by_file.push_back(error);
       fitted.freedom_by_file.push_back(std::isnan(error) ? kNan : errors.freedom[row]);
       if (!(ratio > largest) || std::isinf(ratio)) continue;

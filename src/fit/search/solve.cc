@@ -62,7 +62,9 @@ Solution Solve(const Problem& problem, const Layout& layout, const std::vector<d
   descent_options.max_iterations = options.max_iterations;
   descent_options.function_tolerance = options.function_tolerance;
   descent_options.use_ceres = options.use_ceres;
-  const Descent descent = Descend(ObjectiveOf(problem, layout, pool), ToVector(start), descent_options);
+  BoundedObjective objective = ObjectiveOf(problem, layout, pool);
+  if (layout.size() < options.arrow_from) objective.evaluate_arrow = nullptr;
+  const Descent descent = Descend(objective, ToVector(start), descent_options);
   if (problem.gains() != nullptr) problem.gains()->Profile(problem, layout.ToKernel(descent.u.data()), pool);
   return {{descent.u.data(), descent.u.data() + descent.u.size()},
           descent.cost,

@@ -11,11 +11,15 @@
 
 namespace lobefit {
 
+inline constexpr std::size_t kManyCoordinates = 64;
+
 struct SolveOptions {
   int max_iterations = 300;
   // Relative decrease of the cost at which a descent ends.
   double function_tolerance = 1e-12;
   bool use_ceres = true;  // DescentOptions::use_ceres
+  // From so many coordinates on descents of what is an arrow go through it: a dense step takes their cube.
+  std::size_t arrow_from = kManyCoordinates;
 };
 
 struct Solution {
@@ -39,9 +43,6 @@ double Linearise(const Problem& problem, const Layout& layout, const double* u, 
 // The same as an arrow, without gains and energy rule, which couple the channels.
 double Linearise(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool, ArrowMatrix* hessian,
                  Eigen::VectorXd* gradient);
-// From so many coordinates on, descents of what is an arrow go through it: a dense step takes their cube.
-inline constexpr std::size_t kManyCoordinates = 64;
-
 // The problem over the box of the layout's bounds; all arguments must outlive it.
 BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, ThreadPool* pool);
 
