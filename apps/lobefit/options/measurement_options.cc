@@ -51,12 +51,13 @@ std::map<std::string, std::string> MeasurementOptions::Words() const {
 
 void MeasurementOptions::FillFrom(const std::map<std::string, std::string>& words, const std::string& document) {
   const std::vector<std::pair<std::string, std::string*>> named = Named();
-  for (const auto& [name, word] : words) {
+  for (const auto& entry : words) {
+    const std::string& name = entry.first;
     const auto at = std::find_if(named.begin(), named.end(), [&](const auto& option) { return option.first == name; });
     if (at == named.end())
       throw InputError(document + ": the fit that it holds was read with --" + Excerpt(name) +
                        ", which this version does not have");
-    if (at->second->empty()) *at->second = word;
+    if (at->second->empty()) *at->second = entry.second;
   }
   document_ = document;
 }

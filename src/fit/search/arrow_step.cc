@@ -1,9 +1,8 @@
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include <Eigen/Cholesky>
 
+#include "lobefit/fit/search/active_set.h"
 #include "lobefit/fit/search/descent.h"
 
 namespace lobefit {
@@ -95,20 +94,9 @@ Eigen::VectorXd BoundedStep(const ArrowMatrix& hessian, const Eigen::VectorXd& g
     held[static_cast<std::size_t>(i)] = 1;
     x(i) = low(i);
   }
-  for (Eigen::Index round = 0; round <= n; ++round) {
-    const Eigen::VectorXd step = Minimum(hessian, gradient, held, x);
-    bool left = false;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (held[static_cast<std::size_t>(i)] != 0) continue;
-      x(i) = std::isfinite(step(i)) ? step(i) : 0.0;
-      if (x(i) >= low(i) && x(i) <= high(i)) continue;
-      x(i) = std::clamp(x(i), low(i), high(i));
-      held[static_cast<std::size_t>(i)] = 1;
-      left = true;
-    }
-    if (!left) break;
-  }
-  return x;
+  return StepByActiveSet(low, high, held, x, [&](const std::vector<char>& fixed, const Eigen::VectorXd& at) {
+    return Minimum(hessian, gradient, fixed, at);
+  });
 }
 
 }  // namespace lobefit

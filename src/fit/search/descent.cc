@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "lobefit/fit/search/active_set.h"
 #include "lobefit/fit/search/gram_cost.h"
 
 namespace lobefit {
@@ -164,10 +165,9 @@ Descent Descend(const BoundedObjective& objective, const Eigen::VectorXd& start,
 Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
                             const Eigen::VectorXd& high) {
   const Eigen::Index n = gradient.size();
-  std::vector<char> held(static_cast<std::size_t>(n), 0);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n), right(n);
+  Eigen::VectorXd right(n);
   Eigen::MatrixXd h(n, n);
-  for (Eigen::Index round = 0; round <= n; ++round) {
+  const auto minimum = [&](const std::vector<char>& held, const Eigen::VectorXd& x) -> Eigen::VectorXd {
     h = hessian;
     right = -gradient;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -181,19 +181,10 @@ Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& hessian, const Eigen::VectorX
       h(i, i) = 1;
       right(i) = fixed ? x(i) : 0.0;
     }
-    const Eigen::VectorXd step = h.ldlt().solve(right);
-    bool left = false;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (held[static_cast<std::size_t>(i)] != 0) continue;
-      x(i) = std::isfinite(step(i)) ? step(i) : 0.0;
-      if (x(i) >= low(i) && x(i) <= high(i)) continue;
-      x(i) = std::clamp(x(i), low(i), high(i));
-      held[static_cast<std::size_t>(i)] = 1;
-      left = true;
-    }
-    if (!left) break;
-  }
-  return x;
+    return h.ldlt().solve(right);
+  };
+  return StepByActiveSet(low, high, std::vector<char>(static_cast<std::size_t>(n), 0), Eigen::VectorXd::Zero(n),
+                         minimum);
 }
 
 }  // namespace lobefit

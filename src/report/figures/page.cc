@@ -134,6 +134,8 @@ std::string ModelWords(const Model& model) {
     return "squared ellipsoidal lobes for each incident direction";
   for (const Lobe& lobe : model.lobes) {
     if (!words.empty()) words += "  +  ";
+    if (IsCoat(lobe.fresnel)) words += "coat over the others, ";
+    if (lobe.direction == LobeDirection::kRetro) words += "about the back direction, ";
     words += Find(NdfChoices(), NameOf(NdfChoices(), lobe.ndf))->description;
   }
   if (!model.lobes.empty()) {

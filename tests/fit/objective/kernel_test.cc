@@ -95,6 +95,17 @@ TEST(Kernel, SameBitsOnOneAndEightThreads) {
   EXPECT_TRUE(g1 == g8);
 }
 
+// Derivative of the cost by coordinate k, by central differences.
+double SlopeOfCost(const Problem& problem, const Layout& layout, std::vector<double> u, std::size_t k,
+                   ThreadPool* pool) {
+  constexpr double kStep = 1e-6;
+  const double at = u[k];
+  u[k] = at + kStep;
+  const double up = problem.Sum(layout.ToKernel(u.data()), false, pool).sum_rho;
+  u[k] = at - kStep;
+  return (up - problem.Sum(layout.ToKernel(u.data()), false, pool).sum_rho) / (4 * kStep);
+}
+
 TEST(Kernel, LossesWeighASampleOverItsChannels) {
   Recipe recipe = DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "test");
   const Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20), StandardLayout(), 0.2, 5);
@@ -112,13 +123,7 @@ TEST(Kernel, LossesWeighASampleOverItsChannels) {
     Linearise(problem, layout, u.data(), &pool, &hessian, &gradient);
     // The gradient is the derivative of the cost, by central differences.
     for (std::size_t k = 0; k < u.size(); ++k) {
-      const double step = 1e-6;
-      std::vector<double> up = u, down = u;
-      up[k] += step;
-      down[k] -= step;
-      const double difference = (problem.Sum(layout.ToKernel(up.data()), false, &pool).sum_rho -
-                                 problem.Sum(layout.ToKernel(down.data()), false, &pool).sum_rho) /
-                                (4 * step);
+      const double difference = SlopeOfCost(problem, layout, u, k, &pool);
       EXPECT_NEAR(gradient(static_cast<Eigen::Index>(k)), difference, 1e-5 * gradient.norm()) << k;
     }
   }
@@ -143,13 +148,7 @@ TEST(Kernel, CoatsMoveAllThatLiesBelow) {
     Eigen::VectorXd gradient;
     Linearise(problem, layout, u.data(), &pool, &hessian, &gradient);
     for (std::size_t k = 0; k < u.size(); ++k) {
-      const double step = 1e-6;
-      std::vector<double> up = u, down = u;
-      up[k] += step;
-      down[k] -= step;
-      const double difference = (problem.Sum(layout.ToKernel(up.data()), false, &pool).sum_rho -
-                                 problem.Sum(layout.ToKernel(down.data()), false, &pool).sum_rho) /
-                                (4 * step);
+      const double difference = SlopeOfCost(problem, layout, u, k, &pool);
       EXPECT_NEAR(gradient(static_cast<Eigen::Index>(k)), difference, 1e-7 * gradient.norm())
           << layout.coordinates()[k].name;
       EXPECT_GT(std::fabs(difference), 1e-4 * gradient.norm()) << layout.coordinates()[k].name;

@@ -183,5 +183,12 @@ TEST(WriteReportExr, HoldsTheMapsOrSaysThatThereAreNone) {
   EXPECT_THROW(WriteReportExr(mono, test::Measure(mono, test::GoniometerPairs(false), 0, false), path), OutputError);
 }
 
+TEST(ModelWords, NameCoatsAndBackDirections) {
+  Model model = {{{Ndf::kGgx}, {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered}}, Diffuse::kLambert};
+  EXPECT_THAT(ModelWords(model), testing::HasSubstr("coat over the others, isotropic GGX"));
+  model.lobes[1] = {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kNone, "", LobeDirection::kRetro};
+  EXPECT_THAT(ModelWords(model), testing::HasSubstr("+  about the back direction, isotropic GGX"));
+}
+
 }  // namespace
 }  // namespace lobefit
