@@ -16,7 +16,8 @@ namespace {
 
 using Fields = CsvFields;
 
-// A head is looked for in so much of the file.
+// A head is looked for in so much of the file, lines of comments not counted: a synthetic file has one for each number
+// of its truth.
 constexpr std::size_t kMostColumns = 65536;
 constexpr std::size_t kHeadLines = 400, kHeadBytes = std::size_t{1} << 20, kFirstRows = 60;
 
@@ -57,8 +58,8 @@ class HeaderReader {
   void Gather() {
     CsvLines lines(file_.bytes);
     std::string_view text;
-    std::size_t bytes = 0;
-    while (lines_.size() < kHeadLines && bytes < kHeadBytes && lines.Next(&text)) {
+    std::size_t bytes = 0, counted = 0;
+    while (counted < kHeadLines && bytes < kHeadBytes && lines.Next(&text)) {
       last_line_ = lines.line_number();
       bytes += text.size();
       if (Trim(text).empty()) continue;
@@ -67,7 +68,9 @@ class HeaderReader {
         continue;
       }
       lines_.push_back({lines.line_number(), text, IsComment(text)});
-      if (!lines_.back().comment) CheckColumns(lines_.back());
+      if (lines_.back().comment) continue;
+      ++counted;
+      CheckColumns(lines_.back());
     }
   }
 

@@ -25,6 +25,16 @@ TEST(CsvKeys, AnySpellingAndPlace) {
   EXPECT_EQ(ReadText("# no_value: -1\n" + kRows + "0.5,0,0.8,3,-1\n").set_aside[SetAsideReason::kHole], 1U);
 }
 
+// A synthetic spectrum's file has a line of its truth for each parameter and channel.
+TEST(CsvKeys, MayStandBelowThousandsOfComments) {
+  std::string text;
+  for (int i = 0; i < 5000; ++i) text += "# truth lobe." + std::to_string(i) + " = 0.5\n";
+  text += "# angle-unit: rad\ntheta_i,phi_i,theta_o,phi_o,value\n0.5,0,0.5,3.1,0.25\n0.5,0,0.4,3.1,0.5\n";
+  const Measurement measurement = ReadText(text);
+  ASSERT_EQ(measurement.samples.size(), 2U);
+  EXPECT_NEAR(measurement.samples.wi_z[0], std::cos(0.5), 1e-12);
+}
+
 TEST(CsvKeys, WhatResemblesAKeyIsSaid) {
   EXPECT_NE(MessageOf("# angle-unti: rad\n" + kRows).find("did you mean 'angle-unit'?"), std::string::npos);
   EXPECT_TRUE(HasRemark(ReadText("# unit for all of the angles: rad\n" + kRows), "is not known and was not used"));
