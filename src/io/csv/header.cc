@@ -19,7 +19,7 @@ using Fields = CsvFields;
 // A head is looked for in so much of the file, lines of comments not counted: a synthetic file has one for each number
 // of its truth.
 constexpr std::size_t kMostColumns = 65536;
-constexpr std::size_t kHeadLines = 400, kHeadBytes = std::size_t{1} << 20, kFirstRows = 60;
+constexpr std::size_t kHeadLines = 400, kFirstRows = 60;
 
 struct Line {
   std::size_t number = 0;
@@ -59,7 +59,7 @@ class HeaderReader {
     CsvLines lines(file_.bytes);
     std::string_view text;
     std::size_t bytes = 0, counted = 0;
-    while (counted < kHeadLines && bytes < kHeadBytes && lines.Next(&text)) {
+    while (counted < kHeadLines && bytes < kCsvHeadBytes && lines.Next(&text)) {
       last_line_ = lines.line_number();
       bytes += text.size();
       if (Trim(text).empty()) continue;

@@ -14,6 +14,9 @@
 
 namespace lobefit {
 
+// A head ends within so much of the file.
+inline constexpr std::size_t kCsvHeadBytes = std::size_t{1} << 20;
+
 struct CsvHeader {
   std::vector<CsvColumn> columns;
   char separator = ',';

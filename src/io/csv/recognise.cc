@@ -12,7 +12,7 @@
 namespace lobefit {
 
 bool IsCsv(std::string_view bytes) {
-  CsvLines lines(bytes.substr(0, 1 << 16));
+  CsvLines lines(bytes.substr(0, kCsvHeadBytes));
   std::string_view line;
   bool separators = false;
   while (lines.Next(&line)) {
