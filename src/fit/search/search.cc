@@ -13,6 +13,7 @@ constexpr std::size_t kScoutsKept = 3;
 constexpr std::size_t kMiddle = 40000;
 // Samples from which on a pass takes longer than the steps' own arithmetic, up to so many coordinates.
 constexpr std::size_t kDear = 3 * kMiddle, kMostDense = 200;
+constexpr int kFewSteps = 8, kMostSteps = 100;
 // Minima that go on to the next level: at most so many, and no worse than the best by this factor in cost.
 constexpr std::size_t kToMiddle = 6, kToAll = 2;
 constexpr double kWorse = 1.5, kWorseMiddle = 1.05;
@@ -53,26 +54,25 @@ void Refine(const Problem& problem, const Layout& layout, std::size_t most, doub
   if (minima->empty()) return;
   SolveOptions finish;
   finish.function_tolerance = tolerance;
-  finish.max_iterations = 100;
   const double limit = worse * minima->front().solution.cost;
   std::size_t refined = 0;
   for (DistinctMinimum& minimum : *minima) {
     if (refined < most && (refined == 0 || minimum.solution.cost <= limit)) {
-      const int before = minimum.solution.iterations;
       // Few steps are left, and bounds hold some coordinates: plain steps are minima within the box, where those of
-      // Ceres end at it and are tried again. Of a full table passes are dear: the secants of Ceres take a half to a third
-      // of the steps, 24 for 71 and 48 for 81 of models with 59 and 70 coordinates.
+      // Ceres end at it and are tried again. Where many are needed after all and passes are dear, the secants of Ceres
+      // take a half to a third of them: 24 for 71 and 48 for 81 of models with 59 and 70 coordinates.
       const bool dear = problem.size() > kDear;
-      finish.use_ceres = dear;
-      finish.arrow_from = dear ? kMostDense : kManyCoordinates;
-      minimum.solution = Solve(problem, layout, minimum.solution.u, finish, pool);
-      minimum.solution.iterations += before;
-      if (!minimum.solution.converged) {
-        finish.use_ceres = !dear;
+      finish.arrow_from = kMostDense;
+      const auto go_on = [&](bool use_ceres, int most_steps) {
+        finish.use_ceres = use_ceres;
+        finish.max_iterations = most_steps;
         const int so_far = minimum.solution.iterations;
         minimum.solution = Solve(problem, layout, minimum.solution.u, finish, pool);
         minimum.solution.iterations += so_far;
-      }
+      };
+      go_on(false, dear ? kFewSteps : kMostSteps);
+      if (!minimum.solution.converged) go_on(true, kMostSteps);
+      if (!minimum.solution.converged && dear) go_on(false, kMostSteps);
       minimum.samples = problem.size();
       minimum.on_all_samples = true;
       ++refined;
