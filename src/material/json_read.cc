@@ -200,9 +200,11 @@ void ReadParameters(const Reader& reader, Material* material) {
   }
   const std::size_t coat = CoatOf(material->model);
   if (coat == material->model.lobes.size()) return;
+  constexpr double kMostIndex = 1000;  // beyond any medium; far beyond, nothing enters and the rest divides by that
   const std::vector<double>& ior = material->parameters[FirstFresnel(material->model, coat)].values;
   for (const double value : ior) {
-    if (!(value >= 1)) reader.Fail(fmt::format("the coat's ior is {:g}; it must be at least 1", value));
+    if (!(value >= 1 && value <= kMostIndex))
+      reader.Fail(fmt::format("the coat's ior is {:g}; it must lie in [1, {:g}]", value, kMostIndex));
     if (value != ior[0]) reader.Fail("the coat's ior differs from channel to channel; it is one for all");
   }
 }

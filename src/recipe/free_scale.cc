@@ -1,5 +1,7 @@
 #include "lobefit/recipe/free_scale.h"
 
+#include "lobefit/base/error.h"
+
 namespace lobefit {
 namespace {
 
@@ -20,6 +22,12 @@ void LiftReflectanceBounds(Recipe* recipe) {
 
 Recipe WithFreeScale(const Recipe& recipe) {
   if (recipe.sel) return recipe;  // lobes of a table have no bounds of reflectance
+  if (CoatOf(recipe.model) < recipe.model.lobes.size()) {
+    throw InputError(
+        "recipe '" + recipe.name +
+        "': what a coat reflects and lets through follows from its index, which values of an unknown scale "
+        "do not tell; leave the free scale out, or give the lobe another Fresnel term");
+  }
   Recipe free = recipe;
   for (Lobe& lobe : free.model.lobes) {
     lobe.fresnel = Fresnel::kNone;

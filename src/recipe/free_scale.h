@@ -7,7 +7,7 @@ namespace lobefit {
 
 // The recipe without what only calibrated values can hold: each lobe has a free factor in place of its Fresnel term,
 // and neither that nor the diffuse part is bounded by 1, so that the shape is fitted and the amplitudes stand relative
-// to each other. Metals' indices are dropped with their Fresnel term.
+// to each other. Metals' indices are dropped with their Fresnel term. Throws InputError for a model with a coat.
 Recipe WithFreeScale(const Recipe& recipe);
 
 // Amplitudes and albedos (free, from 0, one a channel) without the bound of 1.

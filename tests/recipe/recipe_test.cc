@@ -74,6 +74,11 @@ TEST(Recipe, FreesWhatIsFixedByDefault) {
   EXPECT_TRUE(ParseRecipe(ToToml(recipe), "r.toml").IsFree(6));
 }
 
+TEST(Recipe, ACoatNeedsCalibratedValues) {
+  EXPECT_THROW(ParseRecipe("scale = \"free\"\n[[lobe]]\nndf = \"ggx\"\nfresnel = \"coat-layered\"\n", "r.toml"),
+               InputError);
+}
+
 // Degrees become radians when they are read: what is written is the number that becomes the same radians again.
 TEST(Recipe, AnglesComeBackFromTheTextToTheLastBit) {
   for (int i = 1; i < 600; ++i) {

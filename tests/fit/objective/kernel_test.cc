@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tests/support/jet_model.h"
 #include "tests/support/synthetic.h"
@@ -134,16 +135,21 @@ TEST(Kernel, LossesWeighASampleOverItsChannels) {
 TEST(Kernel, CoatsMoveAllThatLiesBelow) {
   ThreadPool pool(1);
   const Measurement measurement = Synthetic(OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20), StandardLayout(), 0.2, 5);
-  for (const Fresnel coat : {Fresnel::kCoatLayered, Fresnel::kCoatRefracted}) {
-    Recipe recipe =
-        DefaultRecipe({{{Ndf::kEllipsoid}, {Ndf::kGgx, Masking::kSmithSeparable, coat}}, Diffuse::kLambert}, "coated");
+  const std::pair<Fresnel, double> cases[] = {
+      {Fresnel::kCoatLayered, 0}, {Fresnel::kCoatRefracted, 0}, {Fresnel::kCoatLayered, 1.5}};
+  for (const auto& [coat, detector_deg] : cases) {
+    // The masking of a tilted lobe has kinks, which the mean over a disc brings to every sample.
+    const Ndf base = detector_deg > 0 ? Ndf::kGgxAnisotropic : Ndf::kEllipsoid;
+    Recipe recipe = DefaultRecipe({{{base}, {Ndf::kGgx, Masking::kSmithSeparable, coat}}, Diffuse::kLambert}, "coated");
     recipe.parameters[FirstFresnel(recipe.model, 1) + 1].free = true;  // tau
+    recipe.instrument.detector = DegreesToRadians(detector_deg);
     const Layout layout(recipe, measurement.channels.names);
-    ASSERT_EQ(layout.size(), 5U + 1U + 3U + 1U + 3U + 3U);
+    const std::size_t shape = detector_deg > 0 ? 4 : 6;
+    ASSERT_EQ(layout.size(), shape + 3U + 1U + 3U + 3U);
     const Problem problem(measurement.samples, recipe);
     std::vector<double> u = layout.FromShapes({{0.33, 0.14, 0.05, 0.01, 0.3}, {0.08, 0.08, 0, 0, 0}});
     const double linear[] = {0.4, 0.5, 0.6, 1.6, 0.1, 0.2, 0.3, 0.3, 0.2, 0.1};
-    std::copy(std::begin(linear), std::end(linear), u.begin() + 6);
+    std::copy(std::begin(linear), std::end(linear), u.begin() + static_cast<std::ptrdiff_t>(shape));
     Eigen::MatrixXd hessian;
     Eigen::VectorXd gradient;
     Linearise(problem, layout, u.data(), &pool, &hessian, &gradient);
@@ -153,6 +159,7 @@ TEST(Kernel, CoatsMoveAllThatLiesBelow) {
           << layout.coordinates()[k].name;
       EXPECT_GT(std::fabs(difference), 1e-4 * gradient.norm()) << layout.coordinates()[k].name;
     }
+    if (detector_deg > 0) continue;
     // The stream of the fit and the evaluation of reports are one model.
     std::vector<std::vector<double>> values;
     ModelValues(problem.kernel_samples(), layout.ToKernel(u.data()), 0, problem.size(), &values);
