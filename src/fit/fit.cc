@@ -71,6 +71,9 @@ void FlagEqualAlphas(const Eigen::MatrixXd& covariance, std::size_t first, Eigen
                   prefix, prefix, sigmas));
 }
 
+// Numbers of which a document holds the covariance: 400 take 6 MB. Their square would be 160 MB of 800 channels.
+constexpr std::size_t kMostCovariances = 400;
+
 // Parameters, errors and covariance in outside terms.
 void Report(const Layout& layout, const std::vector<double>& u, const Uncertainty& uncertainty, Material* material) {
   const Recipe& recipe = layout.recipe();
@@ -127,6 +130,21 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
     first_row += static_cast<Eigen::Index>(ShapeParameters(recipe.model.lobes[l]) +
                                            FresnelParameters(recipe.model.lobes[l].fresnel) * layout.channels());
     material->slope_space.push_back({off_center.slope_x, off_center.slope_y, ax, ay, off_center.q12 / (ax * ay)});
+  }
+  if (free_rows.size() > kMostCovariances) {
+    material->remarks.push_back(fmt::format(
+        "the covariance of {} numbers is too large for the document: it holds that of the shapes; each number "
+        "has its standard error",
+        free_rows.size()));
+    std::vector<Eigen::Index> of_shapes;
+    std::vector<double> their_factors;
+    for (std::size_t a = 0; a < free_rows.size(); ++a) {
+      if (names[static_cast<std::size_t>(free_rows[a])].ends_with(']')) continue;  // of one channel
+      of_shapes.push_back(free_rows[a]);
+      their_factors.push_back(factors[a]);
+    }
+    free_rows.swap(of_shapes);
+    factors.swap(their_factors);
   }
   for (std::size_t a = 0; a < free_rows.size(); ++a) {
     material->covariance_names.push_back(names[static_cast<std::size_t>(free_rows[a])]);

@@ -270,5 +270,26 @@ TEST(Fit, ReportsTheErrorUnderEveryMetric) {
   }
 }
 
+// The square of hundreds of channels' numbers would make a document of a hundred megabytes.
+TEST(Fit, ManyChannelsKeepErrorsAndTheCovarianceOfShapes) {
+  SyntheticCase truth =
+      OneLobe(Ndf::kGgxAnisotropic, 0.3, 0.15, 0, 0, 20, std::vector<double>(210, 0.5), std::vector<double>(210, 0.1));
+  for (std::size_t c = 0; c < truth.channels.size(); ++c) truth.channels[c] = std::to_string(400 + c) + "nm";
+  GoniometerLayout layout = StandardLayout();
+  layout.polar_angles.resize(2);
+  layout.detector_step = DegreesToRadians(30);
+  Measurement measurement = Synthetic(truth, layout, 0.03, 1);
+  FitOptions options;
+  options.starts = 2;
+  const Material material = Fit(DefaultRecipe(truth.model, "many"), options, &measurement);
+  EXPECT_EQ(material.covariance_names, (std::vector<std::string>{"alpha_x", "alpha_y", "theta_z_deg"}));
+  ASSERT_EQ(material.covariance.size(), 9U);
+  EXPECT_NEAR(std::sqrt(material.covariance[0]), material.parameters[0].standard_error[0], 1e-15);
+  EXPECT_NEAR(std::sqrt(material.covariance[8]), RadiansToDegrees(material.parameters[4].standard_error[0]), 1e-12);
+  for (const double error : material.parameters[5].standard_error) EXPECT_GT(error, 0);
+  EXPECT_NE(material.remarks.back().find("the covariance of 423 numbers"), std::string::npos)
+      << material.remarks.back();
+}
+
 }  // namespace
 }  // namespace lobefit
