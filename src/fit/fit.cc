@@ -413,7 +413,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   Report(layout, best.u, uncertainty, &material);
   FlagUndeterminedProfiles(problem, layout, best.u, &pool, &material);
   const bool has_rival = FlagRivals(problem, layout, samples, minima, &pool, &material);
-  material.remarks = remarks;
+  material.remarks.insert(material.remarks.begin(), remarks.begin(), remarks.end());
   ReportByFile(EstimateErrorsByFile(problem, layout, best.u, incidences, measurement->samples.file, &pool), &material);
   material.misfit = TestMisfit(problem, layout, best.u, samples, incidences);
   if (material.misfit->flagged) material.remarks.push_back(ToRemark(*material.misfit));

@@ -1,5 +1,6 @@
 #include "lobefit/fit/fit.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/synthetic.h"
