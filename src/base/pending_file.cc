@@ -1,5 +1,6 @@
 #include "lobefit/base/pending_file.h"
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -80,12 +81,16 @@ PendingFile::~PendingFile() {
 void PendingFile::TakePlaceOf(const std::string& name) {
   // EINVAL: a file system without anything to bring to a disk.
   if (fsync(descriptor_) != 0 && errno != EINVAL) ThrowErrno();
-  if (name_.empty()) {
+  const bool unnamed = name_.empty();
+  const std::string self = "/proc/self/fd/" + std::to_string(descriptor_);
+  // A name that is not taken yet is given at once, so that no death can leave another one; a link replaces nothing.
+  const bool is_new = unnamed && linkat(AT_FDCWD, self.c_str(), folder_, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  if (unnamed && !is_new) {
+    if (errno != EEXIST) ThrowErrno();
     RememberName();
-    const std::string self = "/proc/self/fd/" + std::to_string(descriptor_);
     if (linkat(AT_FDCWD, self.c_str(), folder_, name_.c_str(), AT_SYMLINK_FOLLOW) != 0) ThrowErrno();
   }
-  if (renameat(folder_, name_.c_str(), folder_, name.c_str()) != 0) ThrowErrno();
+  if (!is_new && renameat(folder_, name_.c_str(), folder_, name.c_str()) != 0) ThrowErrno();
   ForgetName();
   // The new name too; it is there already for every other process, so that a failure undoes nothing.
   fsync(folder_);

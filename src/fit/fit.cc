@@ -31,9 +31,9 @@
 #include "lobefit/fit/sel/fit.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/math/vec.h"
+#include "lobefit/measurement/checks/isotropy.h"
 #include "lobefit/measurement/incidence.h"
-#include "lobefit/measurement/isotropy.h"
-#include "lobefit/measurement/noise.h"
+#include "lobefit/measurement/prepare/noise.h"
 
 namespace lobefit {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/fit/search/solve.h"
 
 namespace lobefit {

@@ -7,7 +7,7 @@
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/read.h"
-#include "lobefit/measurement/pool.h"
+#include "lobefit/measurement/prepare/pool.h"
 
 namespace lobefit {
 namespace {

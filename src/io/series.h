@@ -19,7 +19,7 @@ struct FileSpec {
 // are keys.
 FileSpec ParseFileSpec(const std::string& text);
 
-// Reads each as ReadMeasurement does and pools them (measurement/pool.h); a folder stands for its files, by name.
+// Reads each as ReadMeasurement does and pools them (measurement/prepare/pool.h); a folder stands for its files, by name.
 // Throws InputError for a folder without files, UsageError for the same file twice.
 Measurement ReadSeries(const std::vector<std::string>& specs, const ReadOptions& options);
 

@@ -1,6 +1,6 @@
 // [dEon] cross-sections of distributions that depend on the polar angle only.
-#include "lobefit/core/ndf/cross_section.h"
-#include "lobefit/core/ndf/cross_section_sg.h"
+#include "lobefit/core/axial/cross_section.h"
+#include "lobefit/core/axial/cross_section_sg.h"
 #include "lobefit/quantities/quantity_columns.h"
 
 namespace lobefit {

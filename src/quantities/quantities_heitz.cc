@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "lobefit/core/masking/g2.h"
-#include "lobefit/core/ndf/smith.h"
+#include "lobefit/core/radial/smith.h"
 #include "lobefit/quantities/quantity_columns.h"
 
 namespace lobefit {

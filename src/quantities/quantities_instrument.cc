@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/core/brdf/ellipsoid_brdf.h"
 #include "lobefit/core/instrument/asinh_residual.h"
 #include "lobefit/core/instrument/ellipsoid_means.h"
 #include "lobefit/core/instrument/gain.h"
 #include "lobefit/core/instrument/ggx_mean.h"
 #include "lobefit/core/instrument/misalignment.h"
+#include "lobefit/core/microfacet/ellipsoid_brdf.h"
 #include "lobefit/quantities/quantity_columns.h"
 
 namespace lobefit {

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "lobefit/core/ndf/profile_masking.h"
-#include "lobefit/core/ndf/smith.h"
 #include "lobefit/core/ndf/student.h"
+#include "lobefit/core/radial/profile_masking.h"
+#include "lobefit/core/radial/smith.h"
 #include "lobefit/quantities/quantity_columns.h"
 
 namespace lobefit {

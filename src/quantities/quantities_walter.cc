@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 
-#include "lobefit/core/brdf/ellipsoid_brdf.h"
-#include "lobefit/core/brdf/energy.h"
-#include "lobefit/core/brdf/vndf.h"
+#include "lobefit/core/ellipsoid/off_center.h"
+#include "lobefit/core/ellipsoid/weighted_form.h"
 #include "lobefit/core/masking/lune.h"
-#include "lobefit/core/ndf/off_center.h"
-#include "lobefit/core/ndf/weighted_form.h"
+#include "lobefit/core/microfacet/ellipsoid_brdf.h"
+#include "lobefit/core/microfacet/energy.h"
+#include "lobefit/core/microfacet/vndf.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/quantities/quantity_columns.h"
 

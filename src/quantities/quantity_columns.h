@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/core/ndf/ellipsoid.h"
-#include "lobefit/core/ndf/slope_distribution.h"
-#include "lobefit/core/ndf/smith.h"
+#include "lobefit/core/ellipsoid/ellipsoid.h"
+#include "lobefit/core/radial/slope_distribution.h"
+#include "lobefit/core/radial/smith.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/quantities/quantities.h"
 

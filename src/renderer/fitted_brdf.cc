@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lobefit/core/brdf/lobe.h"
-#include "lobefit/core/ndf/ellipsoid_symmetry.h"
+#include "lobefit/core/ellipsoid/ellipsoid_symmetry.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

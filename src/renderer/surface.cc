@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lobefit/core/brdf/diffuse.h"
-#include "lobefit/core/brdf/vndf.h"
+#include "lobefit/core/microfacet/vndf.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

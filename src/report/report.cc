@@ -6,7 +6,7 @@
 #include "lobefit/base/parallel.h"
 #include "lobefit/plot/png.h"
 #include "lobefit/report/exr.h"
-#include "lobefit/report/figures/page.h"
+#include "lobefit/report/panels/page.h"
 #include "lobefit/report/web/html.h"
 
 namespace lobefit {

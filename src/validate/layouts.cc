@@ -8,7 +8,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
-#include "lobefit/core/brdf/vndf.h"
+#include "lobefit/core/microfacet/vndf.h"
 #include "lobefit/fit/instrument.h"
 #include "lobefit/io/bsdf_xml/angle_basis.h"
 #include "lobefit/io/merl/table.h"

@@ -10,7 +10,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/core/brdf/brdf.h"
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {

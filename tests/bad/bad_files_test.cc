@@ -14,7 +14,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
-#include "lobefit/io/csv/columns.h"
+#include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/read.h"
 

@@ -24,9 +24,9 @@
 
 #include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/core/ellipsoid/ellipsoid.h"
 #include "lobefit/core/masking/lune.h"
-#include "lobefit/core/ndf/ellipsoid.h"
-#include "lobefit/core/ndf/slope_distribution.h"
+#include "lobefit/core/radial/slope_distribution.h"
 #include "lobefit/core/sel/sel.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/math/rotation.h"

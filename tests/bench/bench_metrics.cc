@@ -14,8 +14,8 @@
 #include "lobefit/base/parallel.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/io/read.h"
-#include "lobefit/report/figures/isotropic_lookup.h"
-#include "lobefit/report/figures/sphere.h"
+#include "lobefit/report/panels/isotropic_lookup.h"
+#include "lobefit/report/panels/sphere.h"
 
 namespace lobefit {
 namespace {

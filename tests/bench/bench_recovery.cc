@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/parallel.h"
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/fit/fit.h"
 
 namespace lobefit {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "lobefit/core/brdf/ggx_lobe.h"
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/fit/sel/slice.h"
 #include "lobefit/math/directions.h"
 

@@ -7,7 +7,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/fit/fit.h"
-#include "lobefit/measurement/pool.h"
+#include "lobefit/measurement/prepare/pool.h"
 #include "lobefit/synthesis/random.h"
 
 namespace lobefit {

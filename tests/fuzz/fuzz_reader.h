@@ -8,7 +8,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/io/formats.h"
-#include "lobefit/measurement/incomplete.h"
+#include "lobefit/measurement/prepare/incomplete.h"
 
 namespace lobefit {
 

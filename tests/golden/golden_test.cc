@@ -11,10 +11,10 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include "lobefit/measurement/exclusion.h"
+#include "lobefit/measurement/prepare/exclusion.h"
 #include "lobefit/plot/png.h"
 #include "lobefit/report/figures/coverage.h"
-#include "lobefit/report/figures/page.h"
+#include "lobefit/report/panels/page.h"
 
 namespace lobefit {
 namespace {

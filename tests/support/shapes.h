@@ -9,7 +9,7 @@
 #include "tests/support/reference_table.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/core/ndf/ellipsoid.h"
+#include "lobefit/core/ellipsoid/ellipsoid.h"
 
 namespace lobefit {
 

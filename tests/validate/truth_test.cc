@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/core/ndf/ellipsoid.h"
+#include "lobefit/core/ellipsoid/ellipsoid.h"
 #include "lobefit/io/csv/writer.h"
 #include "lobefit/io/read.h"
 #include "lobefit/recipe/recipe.h"

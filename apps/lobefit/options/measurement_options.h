@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "lobefit/io/read.h"
-#include "lobefit/measurement/selection.h"
+#include "lobefit/measurement/prepare/selection.h"
 
 namespace lobefit {
 

@@ -13,8 +13,8 @@
 #include "lobefit/base/text.h"
 #include "lobefit/io/write.h"
 #include "lobefit/math/directions.h"
+#include "lobefit/measurement/checks/statistics.h"
 #include "lobefit/measurement/incidence.h"
-#include "lobefit/measurement/statistics.h"
 #include "lobefit/report/figures/coverage.h"
 
 namespace lobefit {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobefit/core/brdf/microfacet.h"
 #include "lobefit/core/fresnel/fresnel.h"
+#include "lobefit/core/microfacet/microfacet.h"
 #include "lobefit/core/ndf/normal_distribution.h"
-#include "lobefit/core/ndf/smith.h"
+#include "lobefit/core/radial/smith.h"
 
 namespace lobefit {
 

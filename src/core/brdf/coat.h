@@ -9,7 +9,7 @@
 // that no energy is made.
 #pragma once
 
-#include "lobefit/core/ndf/slope_distribution.h"
+#include "lobefit/core/radial/slope_distribution.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lobefit/core/brdf/ggx_lobe.h"
-#include "lobefit/core/brdf/microfacet.h"
 #include "lobefit/core/brdf/model.h"
+#include "lobefit/core/microfacet/microfacet.h"
 
 namespace lobefit {
 

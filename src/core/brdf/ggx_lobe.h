@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "lobefit/core/brdf/model.h"
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {

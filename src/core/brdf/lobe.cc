@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "lobefit/core/axial/axial_distribution.h"
 #include "lobefit/core/brdf/coat.h"
 #include "lobefit/core/brdf/radial_lobe.h"
 #include "lobefit/core/fresnel/fresnel.h"
-#include "lobefit/core/ndf/axial_distribution.h"
 #include "lobefit/core/ndf/shape_invariant.h"
 #include "lobefit/core/ndf/student.h"
 

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "lobefit/core/brdf/ggx_lobe.h"
-#include "lobefit/core/brdf/microfacet.h"
 #include "lobefit/core/brdf/model.h"
+#include "lobefit/core/ellipsoid/off_center.h"
+#include "lobefit/core/microfacet/microfacet.h"
 #include "lobefit/core/ndf/normal_distribution.h"
-#include "lobefit/core/ndf/off_center.h"
-#include "lobefit/core/ndf/profile_masking.h"
+#include "lobefit/core/radial/profile_masking.h"
 
 namespace lobefit {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lobefit/base/choice.h"
-#include "lobefit/core/ndf/profile_masking.h"
+#include "lobefit/core/radial/profile_masking.h"
 
 namespace lobefit {
 

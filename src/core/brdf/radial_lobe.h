@@ -6,8 +6,8 @@
 
 #include "lobefit/core/brdf/ggx_lobe.h"
 #include "lobefit/core/brdf/model.h"
-#include "lobefit/core/ndf/off_center.h"
-#include "lobefit/core/ndf/profile_masking.h"
+#include "lobefit/core/ellipsoid/off_center.h"
+#include "lobefit/core/radial/profile_masking.h"
 
 namespace lobefit {
 

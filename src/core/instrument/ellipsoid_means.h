@@ -2,8 +2,8 @@
 // (ggx_mean.h) are measured against, and what `lobefit eval aperture_ggx` gives.
 #pragma once
 
-#include "lobefit/core/brdf/ellipsoid_brdf.h"
 #include "lobefit/core/instrument/aperture.h"
+#include "lobefit/core/microfacet/ellipsoid_brdf.h"
 
 namespace lobefit {
 

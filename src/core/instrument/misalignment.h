@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "lobefit/core/brdf/ellipsoid_brdf.h"
+#include "lobefit/core/microfacet/ellipsoid_brdf.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {

@@ -1,6 +1,6 @@
 #include "lobefit/core/masking/lune.h"
 
-#include "lobefit/core/ndf/weighted_form.h"
+#include "lobefit/core/ellipsoid/weighted_form.h"
 
 namespace lobefit {
 namespace {

@@ -4,7 +4,7 @@
 // of eq 26 for A u . A v < 0 (the printed one loses all digits as v approaches -u).
 #pragma once
 
-#include "lobefit/core/ndf/ellipsoid.h"
+#include "lobefit/core/ellipsoid/ellipsoid.h"
 
 namespace lobefit {
 

@@ -1,7 +1,7 @@
 #include "lobefit/core/ndf/normal_distribution.h"
 
-#include "lobefit/core/ndf/off_center.h"
-#include "lobefit/core/ndf/smith.h"
+#include "lobefit/core/ellipsoid/off_center.h"
+#include "lobefit/core/radial/smith.h"
 
 namespace lobefit {
 

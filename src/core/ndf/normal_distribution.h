@@ -1,8 +1,8 @@
 // One face for every normal distribution, so that masking, BRDF and energy integrals are written once.
 #pragma once
 
-#include "lobefit/core/ndf/ellipsoid.h"
-#include "lobefit/core/ndf/slope_distribution.h"
+#include "lobefit/core/ellipsoid/ellipsoid.h"
+#include "lobefit/core/radial/slope_distribution.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "lobefit/core/ndf/off_center.h"
-#include "lobefit/core/ndf/smith.h"
+#include "lobefit/core/ellipsoid/off_center.h"
+#include "lobefit/core/radial/smith.h"
 
 namespace lobefit {
 

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "lobefit/core/ndf/normal_distribution.h"
-#include "lobefit/core/ndf/profile_masking.h"
+#include "lobefit/core/radial/profile_masking.h"
 
 namespace lobefit {
 

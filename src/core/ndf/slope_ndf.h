@@ -9,7 +9,7 @@
 // c; a null pointer skips them, the value is the same bits either way.
 #pragma once
 
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 
 namespace lobefit {
 

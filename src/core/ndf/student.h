@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "lobefit/core/ndf/shape_invariant.h"
-#include "lobefit/core/ndf/slope_distribution.h"
+#include "lobefit/core/radial/slope_distribution.h"
 
 namespace lobefit {
 

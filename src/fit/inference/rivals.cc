@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "lobefit/core/ndf/ellipsoid_symmetry.h"
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/ellipsoid_symmetry.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/fit/inference/sample_rows.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"

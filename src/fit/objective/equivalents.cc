@@ -2,7 +2,7 @@
 #include <limits>
 #include <numeric>
 
-#include "lobefit/core/ndf/ellipsoid_symmetry.h"
+#include "lobefit/core/ellipsoid/ellipsoid_symmetry.h"
 #include "lobefit/fit/objective/coordinates.h"
 
 namespace lobefit {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "lobefit/core/brdf/brdf.h"
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/math/directions.h"
 

@@ -12,14 +12,14 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
-#include "lobefit/io/csv/columns.h"
-#include "lobefit/io/csv/wavelengths.h"
+#include "lobefit/io/csv/names/columns.h"
+#include "lobefit/io/csv/rows/wavelengths.h"
 #include "lobefit/io/text/json_text.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/io/text/units.h"
 #include "lobefit/math/directions.h"
-#include "lobefit/measurement/noise.h"
 #include "lobefit/measurement/pair_index.h"
+#include "lobefit/measurement/prepare/noise.h"
 
 namespace lobefit {
 namespace {

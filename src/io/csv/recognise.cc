@@ -5,8 +5,8 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
-#include "lobefit/io/csv/columns.h"
-#include "lobefit/io/csv/header.h"
+#include "lobefit/io/csv/head/header.h"
+#include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/csv/reader.h"
 
 namespace lobefit {

@@ -7,8 +7,8 @@
 #include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
-#include "lobefit/io/csv/keys.h"
-#include "lobefit/io/csv/lines.h"
+#include "lobefit/io/csv/head/keys.h"
+#include "lobefit/io/csv/head/lines.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

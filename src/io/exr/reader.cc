@@ -17,7 +17,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
-#include "lobefit/io/csv/columns.h"
+#include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/exr/head.h"
 #include "lobefit/io/exr/map.h"
 #include "lobefit/io/text/options.h"

@@ -7,7 +7,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
-#include "lobefit/io/csv/wavelengths.h"
+#include "lobefit/io/csv/rows/wavelengths.h"
 #include "lobefit/io/text/json_text.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/math/directions.h"

@@ -58,7 +58,7 @@ struct ReadOptions {
       value_kind;  // --value-kind f|f-cos-o|f-cos-i|pi-f|intensity|pi-f-cos-o (csv, alta, astm, exr)
   std::optional<IncidentSense> incident_sense;  // --incident towards|propagation (csv, astm, fred)
   std::optional<std::string> value_column;      // --value-column NAME            (csv with several candidate columns)
-  // --columns MEANING=COLUMN,... (csv): what columns mean whose names do not say it; io/csv/mapping.h.
+  // --columns MEANING=COLUMN,... (csv): what columns mean whose names do not say it; io/csv/head/mapping.h.
   std::string columns;
   // --where COLUMN=VALUE,... (csv): only rows with these texts or numbers.
   std::string where;
@@ -68,7 +68,7 @@ struct ReadOptions {
   std::string value_scale;
   // --no-value LIST (all): words (csv) and numbers that stand for no value.
   std::string no_value;
-  // --exclude ZONES (all): what is set aside; measurement/exclusion.h.
+  // --exclude ZONES (all): what is set aside; measurement/prepare/exclusion.h.
   std::string exclude;
   // --channels CHOICE (all): which channels are used; measurement/spectrum.h. A sample needs values in those only.
   std::string channels;

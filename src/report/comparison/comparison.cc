@@ -10,7 +10,7 @@
 #include "lobefit/plot/png.h"
 #include "lobefit/plot/style.h"
 #include "lobefit/report/comparison/panels.h"
-#include "lobefit/report/figures/page.h"
+#include "lobefit/report/panels/page.h"
 
 namespace lobefit {
 namespace {

@@ -11,10 +11,10 @@
 #include "lobefit/plot/axes.h"
 #include "lobefit/plot/color.h"
 #include "lobefit/plot/style.h"
-#include "lobefit/report/figures/isotropic_lookup.h"
-#include "lobefit/report/figures/page.h"
 #include "lobefit/report/figures/slices.h"
-#include "lobefit/report/figures/sphere.h"
+#include "lobefit/report/panels/isotropic_lookup.h"
+#include "lobefit/report/panels/page.h"
+#include "lobefit/report/panels/sphere.h"
 
 namespace lobefit {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/report/figures/panel.h"
+#include "lobefit/report/panels/panel.h"
 
 namespace lobefit {
 

@@ -14,8 +14,8 @@
 #include "lobefit/plot/color.h"
 #include "lobefit/plot/style.h"
 #include "lobefit/plot/table.h"
-#include "lobefit/report/figures/isotropic_lookup.h"
-#include "lobefit/report/figures/sphere.h"
+#include "lobefit/report/panels/isotropic_lookup.h"
+#include "lobefit/report/panels/sphere.h"
 
 namespace lobefit {
 namespace {

@@ -12,7 +12,7 @@
 #include "lobefit/base/text.h"
 #include "lobefit/material/badge.h"
 #include "lobefit/plot/png.h"
-#include "lobefit/report/figures/page.h"
+#include "lobefit/report/panels/page.h"
 #include "lobefit/report/web/assets.h"
 #include "lobefit/report/web/data.h"
 #include "lobefit/report/web/template.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/report/figures/page.h"
+#include "lobefit/report/panels/page.h"
 #include "lobefit/report/web/html.h"
 
 namespace lobefit {

@@ -7,8 +7,8 @@
 #include "tests/support/shapes.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/core/brdf/ellipsoid_brdf.h"
-#include "lobefit/core/brdf/energy.h"
+#include "lobefit/core/microfacet/ellipsoid_brdf.h"
+#include "lobefit/core/microfacet/energy.h"
 #include "lobefit/math/quadrature.h"
 
 namespace lobefit {

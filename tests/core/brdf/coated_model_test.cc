@@ -10,7 +10,7 @@
 #include "lobefit/core/brdf/coat.h"
 #include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/model_energy.h"
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/math/quadrature.h"
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include "lobefit/core/ndf/ellipsoid.h"
+#include "lobefit/core/ellipsoid/ellipsoid.h"
 #include "lobefit/core/ndf/slope_ndf.h"
 
 namespace lobefit {

@@ -8,8 +8,8 @@
 
 #include "lobefit/core/brdf/coat.h"
 #include "lobefit/core/brdf/diffuse.h"
-#include "lobefit/core/brdf/microfacet.h"
 #include "lobefit/core/fresnel/fresnel.h"
+#include "lobefit/core/microfacet/microfacet.h"
 #include "lobefit/core/ndf/normal_distribution.h"
 #include "lobefit/math/quadrature.h"
 

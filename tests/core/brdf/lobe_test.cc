@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/core/brdf/diffuse_facets.h"
-#include "lobefit/core/brdf/diffuse_microfacets.h"
 #include "lobefit/core/fresnel/fresnel.h"
+#include "lobefit/core/microfacet/diffuse_microfacets.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

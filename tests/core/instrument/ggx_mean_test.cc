@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/core/instrument/ellipsoid_means.h"
-#include "lobefit/core/ndf/off_center.h"
 
 namespace lobefit {
 namespace {

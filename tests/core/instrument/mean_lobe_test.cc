@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/core/ndf/off_center.h"
+#include "lobefit/core/ellipsoid/off_center.h"
 
 namespace lobefit {
 namespace {

@@ -5,7 +5,7 @@
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/core/ndf/ellipsoid_symmetry.h"
+#include "lobefit/core/ellipsoid/ellipsoid_symmetry.h"
 #include "lobefit/fit/search/search.h"
 
 namespace lobefit {

@@ -1,7 +1,7 @@
 // Column names as programs, fields and languages write them.
 #include "tests/io/csv/read_csv.h"
 
-#include "lobefit/io/csv/columns.h"
+#include "lobefit/io/csv/names/columns.h"
 
 namespace lobefit {
 namespace {

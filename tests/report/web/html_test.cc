@@ -19,8 +19,8 @@
 #include "lobefit/base/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/color.h"
-#include "lobefit/report/figures/page.h"
-#include "lobefit/report/figures/sphere.h"
+#include "lobefit/report/panels/page.h"
+#include "lobefit/report/panels/sphere.h"
 #include "lobefit/report/report.h"
 #include "lobefit/report/web/template.h"
 

@@ -1,0 +1,366 @@
+#include "lobefit/io/csv/head/header.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lobefit/base/csv_fields.h"
+#include "lobefit/base/text.h"
+#include "lobefit/io/csv/head/head_lines.h"
+#include "lobefit/io/csv/head/mapping.h"
+#include "lobefit/io/csv/head/no_value.h"
+#include "lobefit/io/text/place.h"
+
+namespace lobefit {
+namespace {
+
+using Fields = CsvFields;
+
+// A head is looked for in so much of the file, lines of comments not counted: a synthetic file has one for each number
+// of its truth.
+constexpr std::size_t kMostColumns = 65536;
+constexpr std::size_t kHeadLines = 400, kFirstRows = 60;
+
+struct Line {
+  std::size_t number = 0;
+  std::string_view text;
+  bool comment = false;
+};
+
+class HeaderReader {
+ public:
+  HeaderReader(const InputFile& file, const std::string& columns) : file_(file), mapping_(columns) {}
+
+  CsvHeader Read() {
+    Gather();
+    if (lines_.empty() || std::all_of(lines_.begin(), lines_.end(), [](const Line& line) { return line.comment; })) {
+      data_ = lines_.size();
+      ReadCommentKeys();
+      FailAtLine(file_, last_line_, "the file ends before a line of column names");
+    }
+    FindData();
+    // A mapping of the columns may stand in the file; the option is the word of whoever reads it.
+    ReadCommentKeys();
+    if (mapping_.empty()) mapping_ = ColumnMapping(header_.keys.columns);
+    const bool named = FindNames();
+    ReadTitleKeys();
+    if (!named) FailWithoutNames();
+    // Names may stand in a comment.
+    if (IsComment(header_.names)) std::erase(header_.comments, std::string(CommentText(header_.names)));
+    mapping_.Fix(file_, header_.names_line, header_.columns, &header_.keys);
+    if (mapping_.head()) header_.head_coordinate = mapping_.head();
+    TakeUnits();
+    TakeRows();
+    return std::move(header_);
+  }
+
+ private:
+  void Gather() {
+    CsvLines lines(file_.bytes);
+    std::string_view text;
+    std::size_t bytes = 0, counted = 0;
+    while (counted < kHeadLines && bytes < kCsvHeadBytes && lines.Next(&text)) {
+      last_line_ = lines.line_number();
+      bytes += text.size();
+      if (Trim(text).empty()) continue;
+      if (lines_.empty() && ToLower(text).starts_with("sep=") && text.size() >= 5) {
+        stated_separator_ = text[4];
+        continue;
+      }
+      lines_.push_back({lines.line_number(), text, IsComment(text)});
+      if (lines_.back().comment) continue;
+      ++counted;
+      CheckColumns(lines_.back());
+    }
+  }
+
+  // Before any name is looked at.
+  void CheckColumns(const Line& line) const {
+    if (line.text.size() <= kMostColumns) return;
+    for (const char separator : {';', '\t', '|', ',', ' '}) {
+      const auto fields = static_cast<std::size_t>(std::count(line.text.begin(), line.text.end(), separator)) + 1;
+      if (fields > kMostColumns) {
+        FailAtLine(
+            file_, line.number,
+            "has " + std::to_string(fields) + " fields; at most " + std::to_string(kMostColumns) + " columns are read");
+      }
+    }
+  }
+
+  // The first row of data, and the separator by which it is one.
+  void FindData() {
+    std::vector<char> candidates = {';', '\t', '|', ',', kBlankSeparator};
+    // A line that Excel writes may name a separator that the file, saved again, does not have.
+    if (stated_separator_) candidates.insert(candidates.begin(), *stated_separator_);
+    for (const char candidate : candidates) {
+      for (std::size_t i = 0; i < lines_.size(); ++i) {
+        if (lines_[i].comment) continue;
+        const Fields fields = SplitFields(lines_[i].text, candidate);
+        if (fields.size() < 2 || !IsData(fields)) continue;
+        if (candidate == ',' && HasCommasWithinNumbers(lines_[i].text, fields)) continue;
+        header_.separator = candidate;
+        data_ = i;
+        FindDecimalMark();
+        return;
+      }
+    }
+    data_ = lines_.size();
+    const Line& first = *std::find_if(lines_.begin(), lines_.end(), [](const Line& line) { return !line.comment; });
+    for (const char candidate : {';', '\t', '|', ','}) {
+      if (first.text.find(candidate) == std::string_view::npos) continue;
+      header_.separator = candidate;
+      return;
+    }
+    header_.separator = kBlankSeparator;
+  }
+
+  void FindDecimalMark() {
+    std::size_t commas = 0, points = 0;
+    std::string storage;
+    for (std::size_t i = data_; i < lines_.size(); ++i) {
+      if (lines_[i].comment) continue;
+      for (const std::string_view raw : SplitFields(lines_[i].text, header_.separator)) {
+        const std::string_view field = Unquoted(raw, &storage);
+        if (HasThousandsSeparator(field)) {
+          FailAtLine(file_, lines_[i].number,
+                     "'" + Excerpt(field) +
+                         "' has both a comma and a point; write numbers without separators between thousands");
+        }
+        if (HasDecimalComma(field)) {
+          ++commas;
+        } else if (field.find('.') != std::string_view::npos && ParseDouble(field)) {
+          ++points;
+        }
+      }
+    }
+    if (commas > 0 && points > 0) {
+      FailAtLine(file_, lines_[data_].number,
+                 "some numbers have a decimal comma and some a decimal point, or commas separate thousands; write all "
+                 "with points");
+    }
+    if (commas > 0) {
+      header_.decimal_mark = ',';
+      header_.remarks.emplace_back("decimal commas were read");
+    }
+  }
+
+  bool SetNames(std::size_t at, std::vector<CsvColumn> columns) {
+    header_.columns = std::move(columns);
+    header_.names_line = lines_[at].number;
+    header_.names = std::string(lines_[at].text);
+    names_ = at;
+    return true;
+  }
+
+  bool TryNames(std::size_t at) {
+    const std::string_view text = lines_[at].comment ? CommentText(lines_[at].text) : lines_[at].text;
+    const Fields fields = SplitNames(text, header_.separator, row_fields_);
+    if (fields.size() < 2 || (fields.size() == 2 && IsNumeric(fields[1]))) return false;
+    std::vector<CsvColumn> columns = Classify(fields);
+    CsvColumn rows;
+    Coordinate head = Coordinate::kPhiO;
+    if (IsCorner(fields[0], &rows, &head)) {
+      columns[0] = rows;
+      header_.head_coordinate = head;
+      return SetNames(at, std::move(columns));
+    }
+    // Angles under merged headings: "Illumination;;Viewing" over "theta;phi;theta;phi".
+    std::size_t lone = 0;
+    for (const CsvColumn& column : columns) {
+      lone += column.role == ColumnRole::kCoordinate &&
+                      (column.coordinate == Coordinate::kTheta || column.coordinate == Coordinate::kPhi)
+                  ? 1
+                  : 0;
+    }
+    const Fields above =
+        at > 0 && !lines_[at - 1].comment ? SplitFields(lines_[at - 1].text, header_.separator) : Fields();
+    // Not a title with its value.
+    if (lone > 1 && !above.empty() && std::none_of(above.begin(), above.end(), IsNumeric)) {
+      const std::vector<std::string> names = Combined(above, fields);
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const CsvColumn combined = ClassifyColumn(names[i]);
+        // A heading may stand alone, over a cell that is empty or holds its unit.
+        const bool alone = columns[i].role == ColumnRole::kIgnored && combined.role == ColumnRole::kValue;
+        if (combined.role == ColumnRole::kCoordinate || alone) columns[i] = combined;
+      }
+    }
+    mapping_.Rename(&columns);
+    if (!NamesADirection(columns)) return false;
+    return SetNames(at, std::move(columns));
+  }
+
+  bool FindNames() {
+    row_fields_ = data_ < lines_.size() ? SplitFields(lines_[data_].text, header_.separator).size() : 0;
+    const std::size_t fields = row_fields_;
+    for (const bool comments : {false, true}) {
+      for (std::size_t i = data_; i-- > 0;) {
+        if (lines_[i].comment != comments || !TryNames(i)) continue;
+        if (comments && header_.columns.size() != fields && fields > 0) {
+          FailAtLine(file_, lines_[data_].number,
+                     "has " + std::to_string(fields) + " fields, but line " + std::to_string(header_.names_line) +
+                         " names " + std::to_string(header_.columns.size()) + " columns");
+        }
+        NameRowNumbers(fields);
+        TakeHeadAbove(i);
+        return true;
+      }
+    }
+    // A line of numbers under an empty corner, and the rows below it.
+    if (data_ + 1 < lines_.size()) {
+      const Fields names = SplitFields(lines_[data_].text, header_.separator);
+      if (Trim(names[0]).empty() && mapping_.head()) {
+        std::vector<CsvColumn> columns = Classify(names);
+        mapping_.Rename(&columns);
+        SetNames(data_, std::move(columns));
+        ++data_;
+        return true;
+      }
+    }
+    if (NameByNumbers(fields)) return true;
+    // No line names a direction: the last line of words before the data then says what there is.
+    for (std::size_t i = data_; i-- > 0;) {
+      if (lines_[i].comment) continue;
+      const Fields names = SplitFields(lines_[i].text, header_.separator);
+      if (names.size() < 2 && data_ < lines_.size()) continue;
+      if (std::all_of(names.begin(), names.end(), IsUnitOrBlank)) continue;
+      std::vector<CsvColumn> columns = Classify(names);
+      mapping_.Rename(&columns);
+      return SetNames(i, std::move(columns));
+    }
+    return false;
+  }
+
+  // Rows without any names, where the mapping says what the columns are by their numbers.
+  bool NameByNumbers(std::size_t fields) {
+    if (fields == 0) return false;
+    std::vector<CsvColumn> columns(fields, ClassifyColumn(""));
+    mapping_.Rename(&columns);
+    if (!NamesADirection(columns)) return false;
+    header_.columns = std::move(columns);
+    header_.names_line = lines_[data_].number;
+    return true;
+  }
+
+  // R writes the numbers of the rows without a name for them.
+  void NameRowNumbers(std::size_t fields) {
+    if (header_.columns.size() + 1 != fields || header_.columns.back().name.empty()) return;
+    std::size_t rows = 0;
+    std::optional<double> last;
+    std::string storage;
+    for (std::size_t i = data_; i < lines_.size() && rows < 5; ++i) {
+      if (lines_[i].comment) continue;
+      const Fields row = SplitFields(lines_[i].text, header_.separator);
+      const std::optional<double> number = ParseDouble(Unquoted(row[0], &storage));
+      if (row.size() != fields || !number || (last && *number != *last + 1)) return;
+      last = number;
+      ++rows;
+    }
+    if (rows < 2) return;
+    header_.columns.insert(header_.columns.begin(), ClassifyColumn(""));
+    header_.remarks.emplace_back("the first column has no name; it counts the rows and was not used");
+  }
+
+  // What the numbers that columns are named by are may stand alone above them: "AOI (deg)".
+  void TakeHeadAbove(std::size_t names) {
+    const bool numbers = std::any_of(header_.columns.begin(), header_.columns.end(),
+                                     [](const CsvColumn& column) { return column.role == ColumnRole::kNumber; });
+    if (!numbers || header_.head_coordinate || names == 0 || lines_[names - 1].comment) return;
+    const Fields above = SplitFields(lines_[names - 1].text, header_.separator);
+    const auto is_filled = [](std::string_view field) { return !Trim(field).empty(); };
+    const auto only = std::find_if(above.begin(), above.end(), is_filled);
+    if (std::count_if(above.begin(), above.end(), is_filled) != 1) return;
+    std::string storage;
+    const CsvColumn column = ClassifyColumn(Unquoted(*only, &storage));
+    if (column.role == ColumnRole::kCoordinate) header_.head_coordinate = column.coordinate;
+  }
+
+  void ReadCommentKeys() {
+    for (std::size_t i = 0; i < data_; ++i) {
+      if (!lines_[i].comment) continue;
+      const std::string_view text = CommentText(lines_[i].text);
+      if (!ReadKey(file_, lines_[i].number, text, &header_.keys) && !text.empty())
+        header_.comments.emplace_back(PlainComment(text));
+    }
+  }
+
+  // Titles above the names: "Wavelength (nm): 633;;;;", "AOI;30;deg".
+  void ReadTitleKeys() {
+    for (std::size_t i = 0; i < data_; ++i) {
+      if (i == names_ || lines_[i].comment) continue;
+      const Fields fields = SplitFields(lines_[i].text, header_.separator);
+      if (ReadKey(file_, lines_[i].number, fields, &header_.keys) || i > names_) continue;
+      std::vector<std::string> filled;
+      std::string storage;
+      for (const std::string_view field : fields) {
+        if (!Trim(field).empty()) filled.emplace_back(Unquoted(field, &storage));
+      }
+      // More are a heading of columns.
+      if (header_.separator == kBlankSeparator) filled = {std::string(Trim(lines_[i].text))};
+      if (filled.size() <= 2) header_.comments.push_back(Join(filled, " "));
+    }
+  }
+
+  void TakeUnits() {
+    header_.first_data_line = data_ < lines_.size() ? lines_[data_].number : lines_[names_].number + 1;
+    for (std::size_t i = names_ + 1; i > 0 && i < data_; ++i) TakeUnitsOf(i, false);
+    if (names_ > 0 && names_ < lines_.size()) TakeUnitsOf(names_ - 1, true);
+    for (const std::string& remark : header_.keys.remarks) header_.remarks.push_back(remark);
+  }
+
+  // A row of units; one that holds a unit which is not known is not passed over, see CsvColumn::problem. Above the names
+  // titles stand, so there it must speak of angles.
+  void TakeUnitsOf(std::size_t line, bool above) {
+    if (lines_[line].comment) return;
+    const Fields units = SplitFields(lines_[line].text, header_.separator);
+    if (units.size() > header_.columns.size() + 1) return;
+    std::string storage;
+    std::size_t known = 0, angles = 0, others = 0;
+    for (const std::string_view unit : units) {
+      known += IsUnitOrBlank(unit) ? 1 : 0;
+      angles += ParseAngleUnit(Unquoted(unit, &storage)) ? 1 : 0;
+      others += IsPerSteradian(PlainUnit(Unquoted(unit, &storage))) ? 1 : 0;
+    }
+    const bool all = known == units.size();
+    const bool some =
+        !above && angles + others > 0 && units.size() == header_.columns.size() &&
+        std::none_of(units.begin(), units.end(), [](std::string_view unit) { return Trim(unit).empty(); });
+    if (above ? !all || angles == 0 : !all && !some) return;
+    for (std::size_t c = 0; c < std::min(units.size(), header_.columns.size()); ++c)
+      SetUnit(Unquoted(units[c], &storage), &header_.columns[c]);
+  }
+
+  void TakeRows() {
+    std::string storage;
+    for (std::size_t i = data_; i < lines_.size() && header_.first_rows.size() < kFirstRows; ++i) {
+      if (lines_[i].comment) continue;
+      std::vector<std::string> row;
+      for (const std::string_view field : SplitFields(lines_[i].text, header_.separator))
+        row.emplace_back(Unquoted(field, &storage));
+      header_.first_rows.push_back(std::move(row));
+    }
+  }
+
+  [[noreturn]] void FailWithoutNames() const {
+    FailAtLine(
+        file_, lines_[std::min(data_, lines_.size() - 1)].number,
+        "numbers begin, but no line names the columns; write a line of names first, or say what they are by --columns "
+        "theta_i=#1,theta_o=#2,... Allowed: " +
+            AllowedColumns());
+  }
+
+  const InputFile& file_;
+  ColumnMapping mapping_;
+  CsvHeader header_;
+  std::vector<Line> lines_;
+  std::optional<char> stated_separator_;
+  std::size_t data_ = 0, names_ = static_cast<std::size_t>(-1), last_line_ = 1;
+  std::size_t row_fields_ = 0;  // of the first row
+};
+
+}  // namespace
+
+CsvHeader ReadCsvHeader(const InputFile& file, const std::string& columns) {
+  return HeaderReader(file, columns).Read();
+}
+
+}  // namespace lobefit

@@ -1,0 +1,246 @@
+#include "lobefit/io/csv/head/keys.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lobefit/base/error.h"
+#include "lobefit/base/text.h"
+#include "lobefit/io/csv/head/mapping.h"
+#include "lobefit/io/csv/head/no_value.h"
+#include "lobefit/io/csv/head/phrases.h"
+#include "lobefit/io/csv/head/row_conditions.h"
+#include "lobefit/io/text/options.h"
+#include "lobefit/io/text/place.h"
+#include "lobefit/math/vec.h"
+#include "lobefit/measurement/prepare/exclusion.h"
+#include "lobefit/measurement/prepare/polarisation.h"
+
+namespace lobefit {
+namespace {
+
+std::string KeyName(std::string_view text) {
+  std::string name;
+  for (const char c : ToLower(Trim(text))) {
+    const bool kept = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (kept) {
+      name += c;
+    } else if (!name.empty() && name.back() != '-') {
+      name += '-';
+    }
+  }
+  while (!name.empty() && name.back() == '-') name.pop_back();
+  return name;
+}
+
+template <class Value>
+void Set(const InputFile& file, std::size_t line, std::string_view key, std::string_view word,
+         const std::string& allowed, const std::optional<Value>& value, std::optional<Value>* target) {
+  if (!value) FailAtLine(file, line, std::string(key) + " is '" + Excerpt(word) + "'; allowed are " + allowed);
+  *target = value;
+}
+
+// Takes the text of an option that the file states for itself. Its parser speaks to whoever typed an option; here it is
+// the file that is wrong, in this line.
+template <class Parse>
+void SetOption(const InputFile& file, std::size_t line, std::string_view word, const Parse& parse,
+               std::string* target) {
+  std::string text(word);
+  try {
+    parse(text);
+  } catch (const UsageError& error) {
+    FailAtLine(file, line, error.what());
+  }
+  *target = std::move(text);
+}
+
+// The kind of value that a word of the option's table or a column's name stands for.
+std::optional<ValueKind> KindOf(std::string_view word) {
+  if (const std::optional<ValueKind> kind = ParseValueKind(word)) return kind;
+  return ClassifyColumn(word).value_kind;
+}
+
+// Of a source or detector as seen from the sample; as recipes allow.
+constexpr double kLargestHalfAngleDeg = 30;
+
+// "1.5 deg" without its unit.
+std::string_view NumberOfDegrees(std::string_view word) {
+  for (const std::string_view unit : {"degrees", "deg"}) {
+    if (word.ends_with(unit)) return Trim(word.substr(0, word.size() - unit.size()));
+  }
+  return word;
+}
+
+bool Is(const std::string& name, std::initializer_list<std::string_view> spellings) {
+  return std::find(spellings.begin(), spellings.end(), name) != spellings.end();
+}
+
+const std::vector<std::string>& KnownKeys() {
+  static const std::vector<std::string> keys = {
+      "angle-unit",      "value-kind", "value-scale", "incident-sense", "wavelength-unit", "sample-rotation-deg",
+      "sample-rotation", "no-value",   "exclude",     "columns",        "value-column",    "repeated"};
+  return keys;
+}
+
+// What concerns the values and is not used, and a key that is none, though it has a word of one: said, so that a unit
+// does not go unread in silence.
+void RemarkOnUnused(std::size_t line, std::string_view key, const std::string& name, std::string_view word,
+                    CsvKeys* keys) {
+  if (name.empty() || name.size() > 30 || Trim(word).empty() || key == "comment") return;
+  const ColumnRole role = ClassifyColumn(key).role;
+  if (role == ColumnRole::kPolarisation && !IsUnpolarised(ToLower(word))) {
+    keys->remarks.push_back("line " + std::to_string(line) + ": the polarisation is '" + Excerpt(word, 40) +
+                            "': the values are f_r of that light, not of unpolarised light");
+    return;
+  }
+  if (role == ColumnRole::kSigma && (name.find("cert") != std::string::npos || word.ends_with('%'))) {
+    keys->remarks.push_back(
+        "line " + std::to_string(line) + ": the uncertainty that '" + Excerpt(key, 40) +
+        "' states for all values was not used; write it into a column, as 'relative uncertainty (%)'");
+    return;
+  }
+  const auto has = [&](std::string_view part) { return name.find(part) != std::string::npos; };
+  const bool resembles = has("unit") || has("sense") || has("convention") || has("cosine") || has("scale") ||
+                         has("factor") || ParseAngleUnit(word) || ParseIncidentSense(word) || ParseValueKind(word);
+  if (resembles) {
+    keys->remarks.push_back("line " + std::to_string(line) + ": the key '" + Excerpt(key) +
+                            "' is not known and was not used; known are " + Join(KnownKeys()) +
+                            ", theta_i and the other angles, wavelength");
+  }
+}
+
+}  // namespace
+
+void CsvKeys::Fix(const FixedCoordinate& coordinate) {
+  for (FixedCoordinate& known : fixed) {
+    if (known.coordinate != coordinate.coordinate) continue;
+    known = coordinate;
+    return;
+  }
+  fixed.push_back(coordinate);
+}
+
+const FixedCoordinate* CsvKeys::Find(Coordinate coordinate) const {
+  for (const FixedCoordinate& known : fixed) {
+    if (known.coordinate == coordinate) return &known;
+  }
+  return nullptr;
+}
+
+bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, CsvKeys* keys) {
+  const std::size_t at = text.find_first_of(":=");
+  if (at == std::string_view::npos) return ReadSentence(text, keys) || ReadPhrase(text, keys);
+  if (ReadCoordinates(text, keys)) return true;
+  const std::string_view key = Trim(text.substr(0, at)), word = Trim(text.substr(at + 1));
+  const std::string name = KeyName(key);
+  if (Is(name, {"angle-unit", "angle-units", "angular-unit", "angular-units", "unit-of-angle", "unit-of-angles",
+                "units-of-angle", "units-of-angles"})) {
+    Set(file, line, "angle-unit", word, "deg, rad, gon, mrad, arcmin, arcsec", ParseAngleUnit(word), &keys->angle_unit);
+  } else if (Is(name, {"units", "unit", "angles", "angle", "winkel", "angulos", "angoli"}) && ParseAngleUnit(word)) {
+    keys->angle_unit = ParseAngleUnit(word);
+  } else if (Is(name, {"value-kind", "values-kind", "kind-of-value", "kind-of-values"})) {
+    Set(file, line, "value-kind", word, AllowedValueKinds(), KindOf(word), &keys->value_kind);
+  } else if (Is(name, {"value-scale", "value-unit", "value-units", "values-unit"})) {
+    Set(file, line, "value-scale", word, "1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.",
+        ParseValueScale(word), &keys->value_scale);
+  } else if (Is(name, {"incident", "incident-sense", "incident-direction", "sense-of-incidence", "incidence-sense"}) &&
+             !ParseQuantity(word)) {
+    Set(file, line, "incident", word, "towards, propagation", ParseIncidentSense(word), &keys->incident_sense);
+  } else if (Is(name, {"wavelength-unit", "wavelength-units", "wavelengths-unit", "unit-of-wavelength",
+                       "unit-of-wavelengths"})) {
+    Set(file, line, "wavelength-unit", word, "nm, um, mm, m, A, cm^-1, eV, THz, GHz", ParseWavelengthUnit(word),
+        &keys->wavelength_unit);
+  } else if (name == "sample-rotation-deg") {
+    const std::optional<double> degrees = ParseDouble(word);
+    if (!degrees || !std::isfinite(*degrees)) {
+      FailAtLine(file, line, "sample-rotation-deg is '" + Excerpt(word) + "'; a number of degrees is allowed");
+    }
+    keys->Fix({Coordinate::kSampleRotation, *degrees, AngleUnit::kDegrees});
+  } else if (name == "turned") {
+    // Half a turn on the stage, as an alignment is told from a tilt by.
+    if (word != "true" && word != "false" && word != "180")
+      FailAtLine(file, line, "turned is '" + Excerpt(word) + "'; allowed are true, false");
+    if (word != "false") keys->Fix({Coordinate::kSampleRotation, 180, AngleUnit::kDegrees});
+  } else if (name == "columns") {
+    // "Columns: incidence, azimuth, value" is prose.
+    if (word.find('=') == std::string_view::npos) return false;
+    SetOption(
+        file, line, word, [](const std::string& words) { ColumnMapping mapping(words); }, &keys->columns);
+  } else if (name == "where") {
+    SetOption(file, line, word, ParseRowConditions, &keys->where);
+  } else if (name == "no-value") {
+    SetOption(
+        file, line, word, [](const std::string& words) { NoValues marks(words); }, &keys->no_value);
+  } else if (name == "exclude") {
+    SetOption(file, line, word, ParseExclusions, &keys->exclude);
+  } else if ((name == "source" || name == "detector") && ParseDouble(NumberOfDegrees(word))) {
+    // Without a number it is prose ("# source: xenon lamp").
+    const double degrees = *ParseDouble(NumberOfDegrees(word));
+    if (!(degrees >= 0 && degrees <= kLargestHalfAngleDeg)) {
+      FailAtLine(file, line,
+                 name + " is '" + Excerpt(word) + "'; the half angle of its disc is allowed, 0 to " +
+                     FormatDouble(kLargestHalfAngleDeg) + " degrees");
+    }
+    (name == "source" ? keys->instrument.source : keys->instrument.detector) = DegreesToRadians(degrees);
+  } else if (name == "mean" && (word == "flux" || word == "plain")) {
+    keys->instrument.plain_mean = word == "plain";
+  } else if (name == "value-column") {
+    keys->value_column = std::string(word);
+  } else if (name == "repeated") {
+    if (!ParseRepeatedRows(word))
+      FailAtLine(file, line, "repeated is '" + Excerpt(word) + "'; allowed are first, mean");
+    keys->repeated = std::string(word);
+  } else if (!ReadUnits(name, word, keys) && !ReadCoordinate(key, word, keys)) {
+    // A misspelt key would leave the file read in the wrong unit without a word.
+    const std::string suggestion = name.size() > 5 ? DidYouMean(name, KnownKeys()) : "";
+    if (!suggestion.empty()) FailAtLine(file, line, "the key '" + Excerpt(key) + "' is not known" + suggestion);
+    RemarkOnUnused(line, key, name, word, keys);
+    return false;
+  }
+  return true;
+}
+
+bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::string_view>& fields, CsvKeys* keys) {
+  std::vector<std::string_view> filled;
+  for (const std::string_view field : fields) {
+    if (!Trim(field).empty()) filled.push_back(Trim(field));
+  }
+  if (filled.empty() || filled.size() > 3) return false;
+  std::string text(filled[0]);
+  // "AOI = 30" between blanks has its mark in a field of its own.
+  const bool marked = filled[0].find_first_of(":=") != std::string_view::npos ||
+                      (filled.size() > 1 && filled[1].find_first_of(":=") == 0);
+  if (!marked) {
+    if (filled.size() == 1) return ReadSentence(filled[0], keys) || ReadPhrase(filled[0], keys);
+    // "Scan 3, incidence 30 deg"
+    for (const std::string_view field : filled) {
+      if (ReadPhrase(field, keys)) return true;
+    }
+    text += ':';
+  }
+  for (std::size_t i = 1; i < filled.size(); ++i) {
+    text += ' ';
+    text += filled[i];
+  }
+  return ReadKey(file, line, text, keys);
+}
+
+void RequireSameUnits(const InputFile& file, std::size_t line, const CsvKeys& before, const CsvKeys& after) {
+  const auto require = [&](bool same, const char* key) {
+    if (!same)
+      FailAtLine(file, line,
+                 std::string(key) +
+                     " changes after rows have been read; put the parts into files of their own and name them all");
+  };
+  require(before.angle_unit == after.angle_unit, "angle-unit");
+  require(before.value_kind == after.value_kind, "value-kind");
+  require(before.incident_sense == after.incident_sense, "incident");
+  require(before.value_scale.has_value() == after.value_scale.has_value(), "value-scale");
+  require(before.wavelength_unit.has_value() == after.wavelength_unit.has_value(), "wavelength-unit");
+  require(before.columns == after.columns && before.where == after.where && before.no_value == after.no_value &&
+              before.exclude == after.exclude && before.value_column == after.value_column &&
+              before.repeated == after.repeated,
+          "columns, where, no-value, exclude, value-column or repeated");
+}
+
+}  // namespace lobefit

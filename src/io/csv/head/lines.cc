@@ -1,0 +1,96 @@
+#include "lobefit/io/csv/head/lines.h"
+
+#include <algorithm>
+
+#include "lobefit/base/csv_fields.h"
+
+namespace lobefit {
+
+namespace {
+
+// Within the quotes that a spreadsheet puts around a comment with a comma: its text with the mark; else nothing.
+std::string_view QuotedComment(std::string_view line) {
+  if (!line.starts_with("\"#")) return {};
+  const std::size_t end = line.rfind('"');
+  const bool alone = line.find_first_not_of(",;\t ", end + 1) == std::string_view::npos;
+  return end > 2 && alone && line.substr(2, end - 2).find('"') == std::string_view::npos ? line.substr(1, end - 1)
+                                                                                         : std::string_view();
+}
+
+}  // namespace
+
+bool IsComment(std::string_view line) {
+  line = Trim(line);
+  return line.starts_with('#') || line.starts_with('%') || line.starts_with("//") || !QuotedComment(line).empty();
+}
+
+std::string_view CommentText(std::string_view line) {
+  line = Trim(line);
+  if (const std::string_view quoted = QuotedComment(line); !quoted.empty()) line = quoted;
+  line.remove_prefix(line.starts_with("//") ? 2 : 1);
+  return Trim(line);
+}
+
+std::string_view PlainComment(std::string_view comment) {
+  return comment.starts_with(kCommentKey) ? comment.substr(kCommentKey.size()) : comment;
+}
+
+CsvLines::CsvLines(std::string_view bytes)
+    : bytes_(bytes), lines_(bytes), has_quotes_(bytes.find('"') != std::string_view::npos) {}
+
+bool CsvLines::Next(std::string_view* line) {
+  const std::size_t begin = lines_.offset();
+  if (!lines_.Next(line)) return false;
+  first_line_ = lines_.line_number();
+  if (!has_quotes_ || line->find('"') == std::string_view::npos || IsComment(*line)) return true;
+  // A quoted cell of a heading may have a few lines; a lone quote must not swallow the file.
+  constexpr int kMostLines = 8;
+  const auto open = [](std::string_view text) {
+    return EndsWithinQuotes(text, ',') || EndsWithinQuotes(text, ';') || EndsWithinQuotes(text, '\t');
+  };
+  LineReader ahead = lines_;
+  std::string_view joined = *line, next;
+  for (int i = 1; i < kMostLines && open(joined); ++i) {
+    if (!ahead.Next(&next)) return true;
+    joined = bytes_.substr(begin, ahead.offset() - begin);
+    while (!joined.empty() && (joined.back() == '\n' || joined.back() == '\r')) joined.remove_suffix(1);
+    if (open(joined)) continue;
+    lines_ = ahead;
+    *line = joined;
+  }
+  return true;
+}
+
+void SplitCsvLine(std::string_view line, char separator, std::vector<std::string_view>* fields) {
+  if (separator != kBlankSeparator) {
+    SplitQuoted(line, separator, fields);
+    return;
+  }
+  *fields = SplitBlanks(line);
+}
+
+std::optional<double> ParseCsvNumber(std::string_view field, char decimal_mark) {
+  field = Trim(field);
+  // The minus sign of typesetters and of some spreadsheets.
+  constexpr std::string_view kMinus = "\xe2\x88\x92";
+  if (const std::size_t minus = field.find(kMinus); minus != std::string_view::npos) {
+    std::string text(field);
+    text.replace(minus, kMinus.size(), "-");
+    return ParseCsvNumber(text, decimal_mark);
+  }
+  if (field.ends_with("\xc2\xb0")) field = Trim(field.substr(0, field.size() - 2));
+  // Fortran writes the exponents of its double precision with a D.
+  const std::size_t exponent = field.find_first_of("dD", 1);
+  if (exponent != std::string_view::npos && field[exponent - 1] >= '.' && field[exponent - 1] <= '9') {
+    std::string text(field);
+    text[exponent] = 'e';
+    return ParseCsvNumber(text, decimal_mark);
+  }
+  if (decimal_mark == '.') return ParseDouble(field);
+  if (field.find('.') != std::string_view::npos && field.find(',') != std::string_view::npos) return std::nullopt;
+  std::string point(field);
+  std::replace(point.begin(), point.end(), decimal_mark, '.');
+  return ParseDouble(point);
+}
+
+}  // namespace lobefit

@@ -1,0 +1,186 @@
+#include "lobefit/io/csv/head/phrases.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "lobefit/base/text.h"
+#include "lobefit/io/csv/names/name_rules.h"
+
+namespace lobefit {
+namespace {
+
+// Takes a unit of a kind that is not known yet.
+bool TakeUnit(std::string_view unit, CsvKeys* keys) {
+  if (const std::optional<AngleUnit> angle = ParseAngleUnit(unit); angle && !keys->angle_unit) {
+    keys->angle_unit = angle;
+  } else if (const std::optional<ValueScale> scale = ParseValueScale(unit); scale && !keys->value_scale) {
+    keys->value_scale = scale;
+  } else if (const std::optional<WavelengthUnit> length = ParseWavelengthUnit(unit); length && !keys->wavelength_unit) {
+    keys->wavelength_unit = length;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// The unit of what `subject` names; false where it names nothing or the unit is none of its kind.
+bool TakeUnitOf(std::string_view subject, std::string_view unit, CsvKeys* keys) {
+  const CsvColumn column = ClassifyColumn(subject);
+  switch (column.role) {
+    case ColumnRole::kCoordinate:
+      if (!ParseAngleUnit(unit) || keys->angle_unit) return false;
+      keys->angle_unit = ParseAngleUnit(unit);
+      return true;
+    case ColumnRole::kValue:
+    case ColumnRole::kOtherValue:
+      if (!ParseValueScale(unit) || keys->value_scale) return false;
+      keys->value_scale = ParseValueScale(unit);
+      return true;
+    case ColumnRole::kWavelength:
+      if (!ParseWavelengthUnit(unit) || keys->wavelength_unit) return false;
+      keys->wavelength_unit = ParseWavelengthUnit(unit);
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::vector<std::string_view> PlainWords(const std::string& lower) {
+  std::vector<std::string_view> words = SplitBlanks(lower);
+  for (std::string_view& word : words) {
+    while (!word.empty() && std::string_view(".,;()[]").find(word.back()) != std::string_view::npos)
+      word.remove_suffix(1);
+    while (!word.empty() && (word.front() == '(' || word.front() == '[')) word.remove_prefix(1);
+  }
+  return words;
+}
+
+}  // namespace
+
+std::optional<Quantity> ParseQuantity(std::string_view text) {
+  std::string plain(Trim(text));
+  std::replace(plain.begin(), plain.end(), ',', '.');
+  for (std::size_t n = plain.size(); n > 0; --n) {
+    const char last = plain[n - 1];
+    if (!(last >= '0' && last <= '9') && last != '.') continue;
+    const std::optional<double> number = ParseDouble(std::string_view(plain).substr(0, n));
+    if (!number || !std::isfinite(*number)) continue;
+    std::string_view unit = Trim(std::string_view(plain).substr(n));
+    if (unit.size() > 1 && (unit.front() == '(' || unit.front() == '[')) unit = unit.substr(1, unit.size() - 2);
+    return Quantity{*number, PlainUnit(unit)};
+  }
+  return std::nullopt;
+}
+
+bool ReadCoordinate(std::string_view key, std::string_view word, CsvKeys* keys) {
+  const CsvColumn column = ClassifyColumn(key);
+  const std::optional<Quantity> quantity = ParseQuantity(word);
+  if (!quantity) return false;
+  if (column.role == ColumnRole::kWavelength) {
+    const std::string& unit = quantity->unit.empty() ? column.unit : quantity->unit;
+    const std::optional<WavelengthUnit> known =
+        unit.empty() ? std::optional(WavelengthUnit{quantity->number < 100 ? 1e3 : 1.0}) : ParseWavelengthUnit(unit);
+    if (!known || !(quantity->number > 0)) return false;
+    keys->wavelength_nm = std::round(known->ToNm(quantity->number) * 1e6) / 1e6;
+    return true;
+  }
+  if (column.role != ColumnRole::kCoordinate || column.coordinate == Coordinate::kTheta) return false;
+  const std::optional<AngleUnit> unit = quantity->unit.empty() ? column.angle_unit : ParseAngleUnit(quantity->unit);
+  if (!quantity->unit.empty() && !unit) return false;
+  if (column.coordinate == Coordinate::kPhi) {
+    keys->lone_azimuth = std::string(key) + ": " + std::string(word);
+    return true;
+  }
+  keys->Fix({column.coordinate, quantity->number, unit, column.form});
+  return true;
+}
+
+bool ReadCoordinates(std::string_view text, CsvKeys* keys) {
+  CsvKeys all = *keys;
+  Coordinate last = Coordinate::kPhi;
+  const std::vector<std::string_view> parts = Split(text, text.find(';') == std::string_view::npos ? ',' : ';');
+  if (parts.size() < 2) return false;
+  for (const std::string_view part : parts) {
+    const std::size_t at = part.find_first_of(":=");
+    if (at == std::string_view::npos) return false;
+    std::string key(Trim(part.substr(0, at)));
+    const CsvColumn column = ClassifyColumn(key);
+    // "incident zenith: 30 deg, azimuth: 90 deg"
+    if (column.role == ColumnRole::kCoordinate && column.coordinate == Coordinate::kPhi) {
+      key = last == Coordinate::kThetaI ? "phi_i" : last == Coordinate::kThetaO ? "phi_o" : "";
+    }
+    if (!ReadCoordinate(key, Trim(part.substr(at + 1)), &all)) return false;
+    last = column.coordinate;
+  }
+  *keys = std::move(all);
+  return true;
+}
+
+bool ReadPhrase(std::string_view text, CsvKeys* keys) {
+  constexpr std::size_t kMostWords = 6;  // more are a description
+  const std::vector<std::string_view> words = SplitBlanks(text);
+  if (words.size() < 2 || words.size() > kMostWords) return false;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (!ParseQuantity(words[i]) || !(words[i].front() >= '-' && words[i].front() <= '9')) continue;
+    const auto at = static_cast<std::size_t>(words[i].data() - text.data());
+    std::string_view quantity = Trim(text.substr(at));
+    if (quantity.ends_with('.')) quantity.remove_suffix(1);
+    return ReadCoordinate(Trim(text.substr(0, at)), quantity, keys);
+  }
+  return false;
+}
+
+bool ReadSentence(std::string_view text, CsvKeys* keys) {
+  const std::string lower = ToLower(text);
+  const std::vector<std::string_view> words = PlainWords(lower);
+  static constexpr std::array<std::string_view, 6> kAngleWords = {"angles",  "angle",  "winkel",
+                                                                  "angulos", "angoli", "azimuths"};
+  constexpr std::size_t kMostWords = 12;  // more are a description
+  std::optional<AngleUnit> unit;
+  bool angles = false;
+  if (words.size() > kMostWords) return false;
+  if (words.size() > 2 && words[words.size() - 2] == "in") {
+    static constexpr std::array<std::string_view, 8> kBeside = {"all",      "are", "is",  "given",
+                                                                "measured", "the", "and", "stated"};
+    std::string subject;
+    for (std::size_t i = 0; i + 2 < words.size(); ++i) {
+      if (!HoldsWord(kBeside, words[i])) subject += " " + std::string(words[i]);
+    }
+    if (TakeUnitOf(subject, words.back(), keys)) return true;
+  }
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    angles = angles || std::find(kAngleWords.begin(), kAngleWords.end(), words[i]) != kAngleWords.end();
+    const std::optional<AngleUnit> own = i > 0 ? ParseAngleUnit(words[i]) : std::nullopt;
+    if (!own) continue;
+    if (unit) return false;
+    // "30 deg" is an angle.
+    if (words[i - 1] != "in" && words[i - 1] != "are" && words[i - 1] != "angles") return false;
+    unit = own;
+  }
+  if (!angles || !unit || keys->angle_unit) return false;
+  keys->angle_unit = unit;
+  return true;
+}
+
+bool ReadUnits(const std::string& name, std::string_view word, CsvKeys* keys) {
+  CsvKeys all = *keys;
+  if (name == "units" || name == "unit") {
+    for (const std::string_view unit : Split(word, word.find(';') == std::string_view::npos ? ',' : ';')) {
+      if (!TakeUnit(Trim(unit), &all)) return false;
+    }
+    *keys = std::move(all);
+    return true;
+  }
+  std::string subject = name;
+  for (const std::string_view end : {"-units", "-unit"}) {
+    if (subject.ends_with(end)) subject.resize(subject.size() - end.size());
+  }
+  for (const std::string_view begin : {"units-of-", "unit-of-"}) {
+    if (subject.starts_with(begin)) subject.erase(0, begin.size());
+  }
+  return subject != name && TakeUnitOf(subject, word, keys);
+}
+
+}  // namespace lobefit

@@ -1,0 +1,361 @@
+#include "lobefit/io/csv/names/columns.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "lobefit/base/text.h"
+#include "lobefit/io/csv/names/name_rules.h"
+
+namespace lobefit {
+namespace {
+
+// Whole names, joined by "_", that are none of the grammar's.
+struct Synonym {
+  std::string_view name;
+  ColumnRole role;
+  Coordinate coordinate = Coordinate::kThetaI;
+};
+constexpr std::array<Synonym, 47> kSynonyms = {{
+    {"aoi", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"incidence", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"incident", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"inc", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"einfallswinkel", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"sza", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"iza", ColumnRole::kCoordinate, Coordinate::kThetaI},
+    {"saa", ColumnRole::kCoordinate, Coordinate::kPhiI},
+    {"iaa", ColumnRole::kCoordinate, Coordinate::kPhiI},
+    {"vza", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"oza", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"receive", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"emission", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"emergence", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"viewing", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"ausfallswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"streuwinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"beobachtungswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"detektorwinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"reflexionswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"aor", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"aov", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"vaa", ColumnRole::kCoordinate, Coordinate::kPhiO},
+    {"oaa", ColumnRole::kCoordinate, Coordinate::kPhiO},
+    {"raa", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
+    {"dphi", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
+    {"dazimuth", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
+    {"phase", ColumnRole::kCoordinate, Coordinate::kPhase},
+    {"phase_angle", ColumnRole::kCoordinate, Coordinate::kPhase},
+    {"delta_theta", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
+    {"dtheta", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
+    {"aspecular", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
+    {"aspecular_angle", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
+    {"beta_0", ColumnRole::kCoordinate, Coordinate::kBeta0},
+    {"beta", ColumnRole::kCoordinate, Coordinate::kBeta},
+    {"beta_s", ColumnRole::kCoordinate, Coordinate::kBeta},
+    {"beta_beta_0", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
+    {"b_b0", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
+    {"delta_beta", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
+    {"dbeta", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
+    {"sample_rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
+    {"rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
+    {"sample_azimuth", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
+    {"stage_rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
+    {"weight", ColumnRole::kWeight},
+    {"weights", ColumnRole::kWeight},
+    {"fr_authors_formula", ColumnRole::kOtherValue},
+}};
+
+constexpr std::array<std::string_view, 55> kIgnored = {"index",
+                                                       "id",
+                                                       "no",
+                                                       "nr",
+                                                       "row",
+                                                       "rows",
+                                                       "n",
+                                                       "num",
+                                                       "number",
+                                                       "#",
+                                                       "point",
+                                                       "time",
+                                                       "date",
+                                                       "datetime",
+                                                       "timestamp",
+                                                       "temperature",
+                                                       "temp",
+                                                       "humidity",
+                                                       "comment",
+                                                       "comments",
+                                                       "remark",
+                                                       "remarks",
+                                                       "note",
+                                                       "notes",
+                                                       "operator",
+                                                       "file",
+                                                       "filename",
+                                                       "l_o_raw",
+                                                       "radiance",
+                                                       "irradiance",
+                                                       "raw",
+                                                       "counts",
+                                                       "signal",
+                                                       "dark",
+                                                       "reference",
+                                                       "gain",
+                                                       "exposure",
+                                                       "exposure_time",
+                                                       "integration_time",
+                                                       "power",
+                                                       "distance",
+                                                       "solid_angle",
+                                                       "aperture",
+                                                       "user",
+                                                       "sample",
+                                                       "material",
+                                                       "status",
+                                                       "flag",
+                                                       "scan",
+                                                       "step",
+                                                       "unnamed",
+                                                       "unnamed_0",
+                                                       "voltage",
+                                                       "current",
+                                                       "background"};
+
+// Short names of angles that mean nothing else.
+constexpr std::array<std::string_view, 16> kAngleShorthands = {"aoi",  "aor",    "aov",      "sza",      "iza", "saa",
+                                                               "iaa",  "vza",    "oza",      "vaa",      "oaa", "raa",
+                                                               "dphi", "dtheta", "dazimuth", "aspecular"};
+
+// "pol", "source polarization", "analyzer angle (deg)": what tells rows of the same directions apart.
+bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {
+  static constexpr std::array<std::string_view, 11> kPolarisation = {"pol",
+                                                                     "polarization",
+                                                                     "polarisation",
+                                                                     "polarizer",
+                                                                     "polariser",
+                                                                     "analyzer",
+                                                                     "analyser",
+                                                                     "polarizacion",
+                                                                     "polarizzazione",
+                                                                     "polarizacao",
+                                                                     "polarisationsrichtung"};
+  static constexpr std::array<std::string_view, 12> kBeside = {"state", "angle",    "orientation", "direction",
+                                                               "plane", "position", "setting",     "axis",
+                                                               "type",  "of",       "the",         "config"};
+  bool polarisation = false, viewer = false, value = false;
+  for (const std::string& word : words) {
+    const bool names_it = HoldsWord(kPolarisation, word);
+    polarisation = polarisation || names_it;
+    viewer = viewer || word == "analyzer" || word == "analyser" || IsViewerWord(word);
+    value = value || !(names_it || HoldsWord(kBeside, word) || IsViewerWord(word) || IsLightWord(word));
+  }
+  if (!polarisation || value) return false;
+  column->role = ColumnRole::kPolarisation;
+  column->of_viewer = viewer;
+  return true;
+}
+
+bool IsValueWord(const std::string& word) {
+  std::optional<ValueKind> kind;
+  return NamesValue(word, &kind);
+}
+
+// Ratios of Mueller matrix elements beside f_r11, as in "f_r12/f_r11": the polarised part, which f_r does not need.
+bool IsMuellerRatio(const NameList& words) {
+  return words.size() == 4 && words[0] == "f" && words[2] == "f" && words[3] == "r11" && words[1].size() == 3 &&
+         words[1][0] == 'r';
+}
+
+// "AOI=10", "theta_i 30", "BRDF (AOI 10 deg)", "10deg": a column of values at a fixed angle.
+bool ClassifyFixed(const NameList& words, CsvColumn* column) {
+  std::optional<double> number;
+  NameList rest;
+  std::string unit = column->unit;
+  for (const std::string& word : words) {
+    std::size_t digits = word.size();
+    while (digits > 0 && !(word[digits - 1] >= '0' && word[digits - 1] <= '9')) --digits;
+    const std::string tail = word.substr(digits);
+    if (!number && digits > 0 && ParseDouble(word.substr(0, digits)) && (tail.empty() || ParseAngleUnit(tail)) &&
+        word.find('e') == std::string::npos) {
+      number = ParseDouble(word.substr(0, digits));
+      if (!tail.empty()) unit = tail;
+    } else if (!(ParseAngleUnit(word) && word != "deg") && word != "deg" && word != "at" && !IsValueWord(word)) {
+      rest.push_back(word);
+    } else if (ParseAngleUnit(word)) {
+      unit = word;
+    }
+  }
+  if (!number || !std::isfinite(*number)) return false;
+  column->fixed = *number;
+  column->unit = unit;
+  if (rest.empty()) {
+    column->role = ColumnRole::kNumber;
+    column->angle_unit = ParseAngleUnit(unit);
+    return true;
+  }
+  const CsvColumn left = ClassifyColumn(Joined(rest));
+  if (left.role != ColumnRole::kCoordinate) return false;
+  column->role = ColumnRole::kFixed;
+  column->coordinate = left.coordinate;
+  column->form = left.form;
+  column->letter_s = left.letter_s;
+  column->angle_unit = ParseAngleUnit(unit);
+  return true;
+}
+
+void ParseUnit(CsvColumn* column) {
+  const std::string& unit = column->unit;
+  if (unit.empty()) return;
+  const auto refuse = [&](const std::string& allowed) {
+    if (column->problem.empty())
+      column->problem = "has the unit '" + Excerpt(unit) + "', which is not known; allowed are " + allowed;
+  };
+  switch (column->role) {
+    case ColumnRole::kCoordinate:
+    case ColumnRole::kFixed: {
+      const bool cosine = (column->coordinate >= Coordinate::kWiX && column->coordinate <= Coordinate::kWoZ) ||
+                          column->form == AngleForm::kCosine;
+      const bool sine = column->coordinate == Coordinate::kBeta || column->coordinate == Coordinate::kBeta0 ||
+                        column->coordinate == Coordinate::kBetaOffset;
+      if (cosine || sine) break;
+      column->angle_unit = ParseAngleUnit(unit);
+      if (!column->angle_unit)
+        refuse(unit == "grad" ? "deg, rad, gon, mrad (grad is read as deg by some and as gon by others)"
+                              : "deg, rad, gon, mrad, arcmin, arcsec");
+      break;
+    }
+    case ColumnRole::kWavelength:
+      column->wavelength_unit = ParseWavelengthUnit(unit);
+      if (!column->wavelength_unit) refuse("nm, um, mm, m, A, cm^-1, eV, THz, GHz");
+      break;
+    case ColumnRole::kValue:
+    case ColumnRole::kOtherValue:
+      if (column->value_scale) {
+        const std::optional<ValueScale> own = ParseValueScale(unit);
+        if (!own || (own->form != ValueScale::Form::kLinear && own->form != column->value_scale->form)) {
+          refuse("1/sr");
+        } else if (own->form == ValueScale::Form::kLinear) {
+          column->value_scale->factor *= own->factor;
+        }
+        break;
+      }
+      column->value_scale = ParseValueScale(unit);
+      if (!column->value_scale && column->role == ColumnRole::kValue)
+        refuse("1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.");
+      break;
+    case ColumnRole::kChannel:
+      // That of a wavelength in the name.
+      if (column->wavelength_nm > 0 && ParseWavelengthUnit(unit)) break;
+      column->value_scale = ParseValueScale(unit);
+      if (!column->value_scale) refuse("1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.");
+      break;
+    case ColumnRole::kSigma:
+      if (unit == "%" || unit == "percent") column->relative = true;
+      // "k=2" below "U".
+      if (unit.starts_with("k=") && ParseDouble(std::string_view(unit).substr(2)).value_or(0) > 0) {
+        column->coverage_factor = *ParseDouble(std::string_view(unit).substr(2));
+        column->problem.clear();
+        column->unit.clear();
+      } else if (unit == "ppm" || unit == "rel" || unit == "rel.") {
+        column->relative = true;
+      } else if (!column->relative && !ParseValueScale(unit)) {
+        refuse("1/sr, %, ppm, dB, a power of ten as in 1e-3/sr");
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace
+
+CsvColumn ClassifyColumn(std::string_view name) {
+  CsvColumn column;
+  column.name = std::string(Trim(name));
+  NameWords split = SplitName(name);
+  if (split.words.size() > 12) return column;
+  column.unit = split.unit;
+  column.foreign = split.foreign;
+  // A unit amid the words: "theta (deg) incident".
+  if (column.unit.empty()) {
+    const auto unit = std::find_if(split.words.begin(), split.words.end(),
+                                   [](const std::string& word) { return ParseAngleUnit(word).has_value(); });
+    if (unit != split.words.end() && split.words.size() > 2) {
+      column.unit = *unit;
+      split.words.erase(unit);
+    }
+  }
+  if (split.words.empty()) {
+    // pandas and R write row numbers under no name.
+    column.role = ColumnRole::kIgnored;
+    return column;
+  }
+  const std::string joined = Joined(split.words);
+  const auto* synonym =
+      std::find_if(kSynonyms.begin(), kSynonyms.end(), [&](const Synonym& s) { return s.name == joined; });
+  const NameList meaning = WithoutFillers(split.words);
+  const CsvColumn blank = column;
+  // Each rule starts from the bare name: one that does not match may have set some of what the next would not.
+  const auto attempt = [&](auto&& rule) {
+    CsvColumn trial = blank;
+    if (!rule(&trial)) return false;
+    column = std::move(trial);
+    return true;
+  };
+  const bool plain = split.function.empty() || split.function == "abs";
+  if (plain && synonym != kSynonyms.end()) {
+    column.role = synonym->role;
+    column.coordinate = synonym->coordinate;
+    column.magnitude = split.magnitude;
+  } else if (attempt([&](CsvColumn* c) { return ClassifyValue(split, c); })) {
+  } else if (attempt([&](CsvColumn* c) { return ClassifySpread(split, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyPolarisation(split.words, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) {
+               return ClassifyChannel(split.words, c) && (c->role = ColumnRole::kChannel, true);
+             })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyWavelengthColumn(meaning, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyAngle(meaning, split.magnitude, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyComponent(split.words, c); })) {
+  } else if (plain && attempt([&](CsvColumn* c) {
+               return ClassifyValueOfChannel(split.words, c) && (c->role = ColumnRole::kChannel, true);
+             })) {
+  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyFixed(split.words, c); })) {
+  } else if (HoldsWord(kIgnored, joined) || IsMuellerRatio(split.words)) {
+    column.role = ColumnRole::kIgnored;
+  }
+  ParseUnit(&column);
+  return column;
+}
+
+void SetUnit(std::string_view unit, CsvColumn* column) {
+  // The unit in the name of a channel is its wavelength's.
+  const bool of_wavelength = column->role == ColumnRole::kChannel && column->wavelength_nm > 0;
+  if (!column->unit.empty() && !of_wavelength) return;
+  std::string_view text = Trim(unit);
+  if (text.size() > 1 && (text.front() == '(' || text.front() == '[') && (text.back() == ')' || text.back() == ']'))
+    text = text.substr(1, text.size() - 2);
+  column->unit = PlainUnit(text);
+  if (column->foreign && column->unit == "grad") column->unit = "deg";
+  ParseUnit(column);
+}
+
+bool LooksLikeAngle(const CsvColumn& column) {
+  if (column.role != ColumnRole::kUnknown) return false;
+  const NameWords split = SplitName(column.name);
+  if (ParseAngleUnit(column.unit)) return true;
+  // "dphi [turn]": the words without the unit that is not known are an angle's.
+  return std::any_of(split.words.begin(), split.words.end(), [](const std::string& word) {
+    return IsAngleWord(word) || ParseAngleUnit(word).has_value() || HoldsWord(kAngleShorthands, word);
+  });
+}
+
+std::string AllowedColumns() {
+  return "theta_i, phi_i, theta_o, phi_o, dphi, azimuth with incidence and receive, theta_o - theta_i, beta - beta0, "
+         "theta_h phi_h theta_d "
+         "phi_d, wi_x ... wo_z, sample_rotation, wavelength, one of f fr f_r brdf bsdf value, or R G B, or X Y Z, or "
+         "wavelengths as 550nm; "
+         "sigma, weight; other names by --columns theta_i=NAME,...";
+}
+
+}  // namespace lobefit

@@ -1,0 +1,319 @@
+#include "lobefit/io/csv/rows/angles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lobefit/base/text.h"
+#include "lobefit/io/text/options.h"
+#include "lobefit/io/text/place.h"
+
+namespace lobefit {
+namespace {
+
+using C = Coordinate;
+
+bool IsSine(C coordinate) { return coordinate == C::kBeta || coordinate == C::kBeta0 || coordinate == C::kBetaOffset; }
+bool IsComponent(C coordinate) { return coordinate >= C::kWiX && coordinate <= C::kWoZ; }
+
+class AngleFinder {
+ public:
+  AngleFinder(const InputFile& file, const CsvHeader& header, const ReadOptions& options,
+              std::vector<CsvColumn>* columns, CsvLayout* layout, Measurement* notes)
+      : file_(file),
+        header_(header),
+        options_(options),
+        columns_(*columns),
+        layout_(*layout),
+        notes_(*notes),
+        head_(header.head_coordinate) {}
+
+  void Find() {
+    DropCosines();
+    ChooseUnit();
+    ResolveLetters();
+    ResolveDifferences();
+    ResolveLone();
+    ResolvePhase();
+    DropRedundant();
+    Give();
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& what) const { FailAtLine(file_, header_.names_line, what); }
+
+  static std::string Quoted(const CsvColumn& column) { return "'" + Excerpt(column.name) + "'"; }
+
+  CsvColumn* Column(C coordinate) {
+    for (CsvColumn& column : columns_) {
+      if (column.role == ColumnRole::kCoordinate && column.coordinate == coordinate) return &column;
+    }
+    return nullptr;
+  }
+  // Columns of that meaning; the columns of a table whose names are its values count as one.
+  std::size_t Count(C coordinate) const {
+    const auto in_rows = std::count_if(columns_.begin(), columns_.end(), [&](const CsvColumn& column) {
+      return column.role == ColumnRole::kCoordinate && column.coordinate == coordinate;
+    });
+    return static_cast<std::size_t>(in_rows) + (InNames(coordinate) ? 1 : 0);
+  }
+  bool InNames(C coordinate) const {
+    return head_ == coordinate || std::any_of(columns_.begin(), columns_.end(), [&](const CsvColumn& column) {
+             return column.role == ColumnRole::kFixed && column.coordinate == coordinate;
+           });
+  }
+  // How messages name what has that meaning.
+  std::string NameOf(C coordinate, const char* in_names) {
+    const CsvColumn* column = Column(coordinate);
+    return column != nullptr ? column->name : in_names;
+  }
+  // Stated by a column, a key, or the names of the columns of a table.
+  bool Known(C coordinate) {
+    return Column(coordinate) != nullptr || header_.keys.Find(coordinate) != nullptr || InNames(coordinate);
+  }
+  void Become(C from, C to) {
+    for (CsvColumn& column : columns_) {
+      const bool angle = column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed;
+      if (angle && column.coordinate == from) column.coordinate = to;
+    }
+    if (head_ == from) head_ = to;
+  }
+
+  void ChooseUnit() {
+    default_unit_ = options_.angle_unit.value_or(header_.keys.angle_unit.value_or(AngleUnit::kDegrees));
+    bool by_name = false;
+    for (const CsvColumn& column : columns_)
+      by_name = by_name || (column.role == ColumnRole::kCoordinate && column.angle_unit && !options_.angle_unit);
+    const char* origin = options_.angle_unit ? "option" : header_.keys.angle_unit ? "header" : "default";
+    notes_.conventions["angle-unit"] = by_name ? "by column names" : Name(default_unit_) + " (" + origin + ")";
+  }
+
+  double Scale(const CsvColumn& column) const {
+    return column.form == AngleForm::kCosine ? 1 : Scale(column.coordinate, column.angle_unit);
+  }
+  double Scale(C coordinate, const std::optional<AngleUnit>& own) const {
+    if (IsSine(coordinate) || IsComponent(coordinate)) return 1;
+    return RadiansPerUnit(own && !options_.angle_unit ? *own : default_unit_);
+  }
+
+  // "theta_s" is the sun where theta_v or theta_r stands beside it and no other name is the light's.
+  void ResolveLetters() {
+    for (const auto& [viewer, light] : {std::pair{C::kThetaO, C::kThetaI}, std::pair{C::kPhiO, C::kPhiI}}) {
+      if (Count(viewer) != 2 || Known(light)) continue;
+      for (CsvColumn& column : columns_) {
+        if (column.role == ColumnRole::kCoordinate && column.coordinate == viewer && column.letter_s)
+          column.coordinate = light;
+      }
+    }
+  }
+
+  // "d" is the difference angle beside theta_h, else a detector's or, of an azimuth alone, the difference of azimuths.
+  void ResolveDifferences() {
+    if (Known(C::kThetaH)) return;
+    const bool detector = Column(C::kThetaD) != nullptr;
+    Become(C::kPhiD, detector ? C::kPhiO : C::kDeltaPhi);
+    Become(C::kThetaD, C::kThetaO);
+  }
+
+  bool HasLight() { return Known(C::kThetaI) || Known(C::kBeta0); }
+  bool HasViewer() { return Known(C::kThetaO) || Known(C::kFromSpecular) || Known(C::kBeta) || Known(C::kBetaOffset); }
+
+  void ResolveLone() {
+    if (Count(C::kTheta) == 1 && !Known(C::kThetaH)) {
+      if (HasLight() && !HasViewer()) {
+        Become(C::kTheta, C::kThetaO);
+      } else if (HasViewer() && !HasLight()) {
+        Become(C::kTheta, C::kThetaI);
+      } else if (!HasLight() && !HasViewer()) {
+        Fail("the column '" + Excerpt(NameOf(C::kTheta, "theta")) +
+             "' can be the light's or the viewer's polar angle; say where the light stands by a line '# theta_i: 30', "
+             "by FILE:theta_i=30, or which is which by --columns");
+      }
+    }
+    if (Count(C::kPhi) != 1) return;
+    const std::string phi = NameOf(C::kPhi, "phi");
+    const CsvColumn* viewer = Column(C::kThetaO);
+    const bool three_axis = viewer != nullptr && ToLower(viewer->name).find("receive") != std::string::npos &&
+                            ToLower(phi).find("azim") != std::string::npos;
+    if (Known(C::kThetaH)) {
+      Become(C::kPhi, Known(C::kPhiH) ? C::kPhiD : C::kPhiH);
+    } else if (three_axis && !Known(C::kPhiI) && !Known(C::kPhiO)) {
+      Become(C::kPhi, C::kAzimuth);
+    } else if (Known(C::kPhase)) {
+      return;  // the first rows tell
+    } else if (Known(C::kPhiI) && !Known(C::kPhiO) && !Known(C::kDeltaPhi)) {
+      Become(C::kPhi, C::kPhiO);
+    } else if (Known(C::kPhiO) && !Known(C::kPhiI)) {
+      Become(C::kPhi, C::kPhiI);
+    } else if (!Known(C::kPhiI) && !Known(C::kPhiO) && !Known(C::kDeltaPhi)) {
+      notes_.conventions["azimuths"] = Excerpt(phi) + " is relative to the light: 180 degrees is the mirror's side";
+      Become(C::kPhi, C::kDeltaPhi);
+    }
+  }
+
+  // The angle of a row's field in radians; NaN where it is none.
+  double Angle(const std::vector<std::string>& row, const CsvColumn* column) const {
+    const auto at = static_cast<std::size_t>(column - columns_.data());
+    const std::optional<double> number = at < row.size() ? ParseCsvNumber(row[at], header_.decimal_mark) : std::nullopt;
+    if (number && column->form == AngleForm::kCosine) return std::acos(*number);
+    return number ? *number * Scale(*column) : std::nan("");
+  }
+
+  // Planetary files hold incidence, emission, the azimuth between them and the phase angle, which follows from those.
+  // Where the numbers are not bound in this way, azimuth and phase are those of the two directions.
+  void ResolvePhase() {
+    const CsvColumn* phase = Column(C::kPhase);
+    const CsvColumn* azimuth = Column(C::kPhi);
+    if (phase == nullptr || azimuth == nullptr) return;
+    const CsvColumn* in = Column(C::kThetaI);
+    const CsvColumn* out = Column(C::kThetaO);
+    if (in == nullptr || out == nullptr) return;
+    std::size_t rows = 0, follow = 0;
+    for (const std::vector<std::string>& row : header_.first_rows) {
+      const double i = Angle(row, in), e = Angle(row, out), psi = Angle(row, azimuth), g = Angle(row, phase);
+      if (std::isnan(i + e + psi + g)) continue;
+      ++rows;
+      const double cos_g = std::cos(i) * std::cos(e) + std::sin(i) * std::sin(e) * std::cos(psi);
+      follow += std::fabs(std::acos(std::clamp(cos_g, -1.0, 1.0)) - std::fabs(g)) < 0.02 ? 1 : 0;
+    }
+    if (10 * follow >= 9 * rows && rows > 0) {
+      notes_.remarks.push_back(Quoted(*phase) + " follows from the other angles and was not used; " + Quoted(*azimuth) +
+                               " is relative to the light");
+      Become(C::kPhi, C::kDeltaPhi);
+      columns_[static_cast<std::size_t>(phase - columns_.data())].role = ColumnRole::kIgnored;
+    } else {
+      notes_.remarks.push_back(Quoted(*phase) +
+                               " is not the angle between the two directions: read as the azimuth of the viewer, and " +
+                               Quoted(*azimuth) + " as that of the light");
+      Become(C::kPhi, C::kPhiI);
+      Become(C::kPhase, C::kPhiO);
+    }
+  }
+
+  // Cosines beside the angles that they are of, or beside directions that hold them.
+  void DropCosines() {
+    for (CsvColumn& column : columns_) {
+      if (column.role != ColumnRole::kCoordinate || column.form != AngleForm::kCosine) continue;
+      const bool beside = std::any_of(columns_.begin(), columns_.end(), [&](const CsvColumn& other) {
+        return other.role == ColumnRole::kCoordinate && other.form != AngleForm::kCosine &&
+               (other.coordinate == column.coordinate || other.coordinate == C::kThetaH || other.coordinate == C::kWiX);
+      });
+      if (beside || header_.keys.Find(column.coordinate) != nullptr || InNames(column.coordinate))
+        column.role = ColumnRole::kIgnored;
+    }
+  }
+
+  // Offsets from the mirror direction and phase angles beside what they follow from.
+  void DropRedundant() {
+    for (CsvColumn& column : columns_) {
+      if (column.role != ColumnRole::kCoordinate) continue;
+      const bool offset =
+          column.coordinate == C::kFromSpecular || column.coordinate == C::kBetaOffset || column.coordinate == C::kBeta;
+      const bool sine = column.coordinate == C::kBeta0;
+      const bool phase =
+          column.coordinate == C::kPhase && (Known(C::kPhiO) || Known(C::kDeltaPhi) || Known(C::kAzimuth));
+      if ((offset && Known(C::kThetaO)) || (sine && Known(C::kThetaI)) || phase) column.role = ColumnRole::kIgnored;
+    }
+    if (Column(C::kBeta) != nullptr || Column(C::kFromSpecular) != nullptr) {
+      CsvColumn* offset = Column(C::kBetaOffset);
+      if (offset != nullptr) offset->role = ColumnRole::kIgnored;
+    }
+    if (Known(C::kPhiI) && Known(C::kPhiO) && Column(C::kDeltaPhi) != nullptr) {
+      Fail("both phi_o and dphi are given; remove one of them");
+    }
+  }
+
+  void Give() {
+    DirectionReader& directions = layout_.directions;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const CsvColumn& column = columns_[i];
+      if (column.role != ColumnRole::kCoordinate) continue;
+      for (const auto& [coordinate, other] : layout_.coordinates) {
+        if (coordinate == column.coordinate)
+          Fail("the columns " + Quoted(columns_[other]) + " and " + Quoted(column) +
+               " mean the same; remove one of them");
+      }
+      directions.Give(column.coordinate, Scale(column), column.form);
+      if (column.coordinate == C::kFromSpecular || column.coordinate == C::kBetaOffset)
+        directions.SetOffset(column.reversed, column.magnitude);
+      layout_.coordinates.emplace_back(column.coordinate, i);
+    }
+    const CsvColumn* first = nullptr;
+    for (const CsvColumn& column : columns_) {
+      if (column.role != ColumnRole::kFixed) continue;
+      if (first == nullptr) first = &column;
+      if (Scale(column) != Scale(*first) || column.form != first->form)
+        Fail("the columns " + Quoted(*first) + " and " + Quoted(column) + " have different units; use one unit");
+      directions.Give(column.coordinate, Scale(column), column.form);
+    }
+    if (head_) directions.Give(*head_, Scale(*head_, std::nullopt));
+    for (const FixedCoordinate& fixed : header_.keys.fixed) {
+      if (directions.Has(fixed.coordinate)) continue;
+      directions.Give(fixed.coordinate, Scale(fixed.coordinate, fixed.unit), fixed.form);
+      layout_.fixed[static_cast<std::size_t>(fixed.coordinate)] = fixed.number;
+    }
+    if (directions.Has(C::kPhiO) && directions.Has(C::kDeltaPhi))
+      Fail("both phi_o and dphi are given; remove one of them");
+    const bool other_phi = directions.Has(C::kPhiO) || directions.Has(C::kDeltaPhi) || directions.Has(C::kPhiI);
+    if (directions.Has(C::kAzimuth) && other_phi)
+      Fail("both azimuth and phi columns are given; name them phi_i and phi_o");
+    const bool azimuths = other_phi || directions.Has(C::kAzimuth) || directions.Has(C::kPhase) ||
+                          directions.Has(C::kThetaH) || directions.Has(C::kWiX) || Column(C::kPhi) != nullptr;
+    if (!header_.keys.lone_azimuth.empty() && !azimuths) {
+      Fail(
+          "the head states '" + Excerpt(header_.keys.lone_azimuth, 40) +
+          "', which does not say whose azimuth it is; name it phi_i, phi_o or dphi (180 degrees is the mirror's side)");
+    }
+    const std::string missing = directions.Missing();
+    if (!missing.empty()) {
+      std::vector<std::string> names;
+      for (const CsvColumn& column : columns_) names.push_back(Excerpt(column.name));
+      Fail("no column holds " + missing + "; the columns are " + Excerpt(Join(names), 200) +
+           (missing.find("(theta_") == std::string::npos
+                ? ""
+                : "; an angle that all rows share is stated by a line '# theta_i: 30', or by FILE:theta_i=30") +
+           "; allowed: " + AllowedColumns());
+    }
+    const auto alpha = std::find_if(columns_.begin(), columns_.end(), [](const CsvColumn& column) {
+      const NameWords name = SplitName(column.name);
+      return column.role == ColumnRole::kUnknown && !name.words.empty() && name.words[0] == "alpha";
+    });
+    if (directions.Has(C::kBeta) && alpha != columns_.end()) {
+      Fail(Quoted(*alpha) + " and " + Quoted(*Column(C::kBeta)) +
+           " are two direction cosines of which the axes are not said; write wi_x ... wo_z or polar angles and "
+           "azimuths");
+    }
+    if (Column(C::kTheta) != nullptr || Column(C::kPhi) != nullptr) {
+      const CsvColumn& column = *(Column(C::kTheta) != nullptr ? Column(C::kTheta) : Column(C::kPhi));
+      Fail("the column " + Quoted(column) +
+           " does not say whose angle it is; name it phi_i, phi_o or dphi (theta_i or theta_o), or say it with "
+           "--columns phi_o=" +
+           Excerpt(column.name));
+    }
+    const IncidentSense sense =
+        options_.incident_sense.value_or(header_.keys.incident_sense.value_or(IncidentSense::kTowardsSource));
+    directions.SetPropagation(sense == IncidentSense::kPropagation);
+    notes_.conventions["incident"] = Name(sense) + (options_.incident_sense       ? " (option)"
+                                                    : header_.keys.incident_sense ? " (header)"
+                                                                                  : " (default)");
+    if (notes_.conventions.count("azimuths") == 0 && !directions.Azimuths().empty())
+      notes_.conventions["azimuths"] = directions.Azimuths();
+  }
+
+  const InputFile& file_;
+  const CsvHeader& header_;
+  const ReadOptions& options_;
+  std::vector<CsvColumn>& columns_;
+  CsvLayout& layout_;
+  Measurement& notes_;
+  std::optional<C> head_;  // what the names of the columns of a table are
+  AngleUnit default_unit_ = AngleUnit::kDegrees;
+};
+
+}  // namespace
+
+void FindAngles(const InputFile& file, const CsvHeader& header, const ReadOptions& options,
+                std::vector<CsvColumn>* columns, CsvLayout* layout, Measurement* notes) {
+  AngleFinder(file, header, options, columns, layout, notes).Find();
+}
+
+}  // namespace lobefit
