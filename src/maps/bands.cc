@@ -1,6 +1,7 @@
 #include "lobefit/maps/bands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mutex>
 
@@ -30,33 +31,58 @@ std::vector<BandRange> BandsOf(const std::vector<std::pair<std::size_t, std::siz
   return bands;
 }
 
-MapRows FitBand(const Stack& stack, const MapRecipe& recipe, const FittedLights& lights, double log_alpha,
+// One texel, with what it shares and what is known of its normal.
+TexelFit FitTexel(const SharedNumbers& shared, const Vec3* normal, const std::vector<float>& values, std::size_t lights,
+                  int channels, TexelFitter* fitter) {
+  HeldNumbers held;
+  if (normal != nullptr) held.normal = true, held.point.normal = *normal;
+  std::size_t group = 0;
+  const bool parted = !shared.clusters.centers.empty();
+  if (parted) {
+    const TexelFit alone = fitter->Fit(values.data(), lights, held);
+    if ((alone.status & kMapTooFew) != 0) return alone;
+    group = shared.clusters.Nearest(FeaturesOf(alone, channels));
+  }
+  if (!shared.groups.empty()) held = shared.groups[group].held;
+  if (normal != nullptr) held.normal = true, held.point.normal = *normal;
+  TexelFit fit = fitter->Fit(values.data(), lights, held);
+  if (parted) fit.cluster = static_cast<std::uint32_t>(group + 1);
+  return fit;
+}
+
+MapRows FitBand(const Stack& stack, const MapRecipe& recipe, const FittedLights& lights, const SharedNumbers& shared,
                 const StackBand& band, TexelFitter* fitter) {
   const int channels = static_cast<int>(stack.channels);
-  const std::vector<MapPlane> planes = PlanesFor(recipe.rules.lobe, channels);
+  const std::vector<MapPlane> planes = PlanesFor(KindOf(recipe, stack));
   MapRows rows = {band.first_row, band.rows, stack.width, {}};
   rows.values.assign(planes.size(), std::vector<float>(band.rows * stack.width));
   std::vector<float> values(stack.channels * lights.index.size()), numbers(planes.size());
-  std::vector<Vec3> directions;
-  TexelFit outside;
-  outside.status = kMapOutside;
+  LightPaths paths;
+  TexelFit outside, unknown;
+  outside.status = kMapOutside, unknown.status = kMapTooFew | kMapNotDetermined;
   for (std::size_t t = 0; t < band.rows * stack.width; ++t) {
     TexelFit fit = outside;
+    const Vec3* normal = band.normals.empty() ? nullptr : &band.normals[t];
+    const bool is_known = normal == nullptr || !std::isnan(normal->z);
     if (stack.Holds(band.first_row * stack.width + t)) {
       Gather(band, t, stack.channels, lights, stack.lights.size(), values.data());
-      if (stack.near) {
-        DirectionsAt(stack, lights.index, band.first_row * stack.width + t, &directions);
-        fitter->MoveLights(directions);
+      if (stack.MovesPaths()) {
+        PathsAt(stack, lights.index, band.first_row * stack.width + t, &paths);
+        fitter->Move(paths);
       }
-      fit = fitter->Fit(values.data(), lights.index.size(), log_alpha);
+      fit = is_known ? FitTexel(shared, normal, values, lights.index.size(), channels, fitter) : unknown;
     }
-    Fill(fit, recipe.rules.lobe, channels, numbers.data());
+    Fill(fit, KindOf(recipe, stack), numbers.data());
     for (std::size_t k = 0; k < planes.size(); ++k) rows.values[k][t] = numbers[k];
   }
   return rows;
 }
 
 }  // namespace
+
+MapKind KindOf(const MapRecipe& recipe, const Stack& stack) {
+  return {recipe.rules.lobe, static_cast<int>(stack.channels), recipe.shares.Parts()};
+}
 
 FittedLights LightsWithout(const Stack& stack, const std::vector<std::size_t>& left_out) {
   FittedLights lights;
@@ -81,7 +107,7 @@ std::size_t RowsOfBand(const Stack& stack) {
   return std::clamp(kBandBytes / row, std::size_t{1}, kMostBandRows);
 }
 
-void FitBands(const Stack& stack, const MapRecipe& recipe, const FittedLights& lights, double log_alpha,
+void FitBands(const Stack& stack, const MapRecipe& recipe, const FittedLights& lights, const SharedNumbers& shared,
               const std::vector<std::pair<std::size_t, std::size_t>>& ranges, int threads,
               const std::function<void(const MapRows&)>& done) {
   std::size_t height = RowsOfBand(stack);
@@ -97,7 +123,7 @@ void FitBands(const Stack& stack, const MapRecipe& recipe, const FittedLights& l
   std::size_t next = 0;
   const auto workers = std::min(static_cast<std::size_t>(threads), bands.size());
   ParallelFor(workers, threads, [&](std::size_t) {
-    TexelFitter fitter(recipe.rules, lights.directions, static_cast<int>(stack.channels));
+    TexelFitter fitter(recipe.rules, {lights.directions, {}}, static_cast<int>(stack.channels));
     while (true) {
       StackBand band;
       {
@@ -111,7 +137,7 @@ void FitBands(const Stack& stack, const MapRecipe& recipe, const FittedLights& l
           throw;
         }
       }
-      done(FitBand(stack, recipe, lights, log_alpha, band, &fitter));
+      done(FitBand(stack, recipe, lights, shared, band, &fitter));
       progress.Advance(band.rows * stack.width);
     }
   });

@@ -20,6 +20,32 @@ Json Lights(const std::vector<std::size_t>& indices) {
   return list;
 }
 
+// What is shared, with its errors; amplitudes as in the maps.
+Json SharedGroup(const Stack& stack, const MapRecipe& recipe, const SharedNumbers::Group& group) {
+  const MapModel model = {recipe.rules.lobe, static_cast<int>(stack.channels), recipe.rules.schlick};
+  const HeldNumbers& held = group.held;
+  const MapPoint& point = held.point;
+  Json json = {{"texels", group.texels}};
+  const auto number = [](double value) { return std::isnan(value) ? Json() : Json(value); };
+  if (held.normal) json["normal"] = {point.normal.x, point.normal.y, point.normal.z};
+  if (held.slope) json["mean_slope"] = {point.slope[0], point.slope[1]};
+  if (held.width && model.Shape() == 3) {
+    json["alpha"] = number(std::exp(point.width[0])), json["ln_alpha_stderr"] = number(group.error[2]);
+  } else if (held.width) {
+    json["slope_widths"] = {std::exp(point.width[0]), point.width[1], std::exp(point.width[2])};
+  }
+  const auto amplitudes = [&](const char* name, const std::array<double, kMostChannels>& values, double unit,
+                              const auto& at) {
+    for (int c = 0; c < model.channels; ++c) {
+      json[name].push_back(unit * values[static_cast<std::size_t>(c)]);
+      json[std::string(name) + "_stderr"].push_back(number(unit * group.error[static_cast<std::size_t>(at(c))]));
+    }
+  };
+  if (held.diffuse) amplitudes("diffuse", point.diffuse, kPi, [&](int c) { return model.DiffuseAt(c); });
+  if (held.f0) amplitudes("f0", point.f0, 1, [&](int c) { return model.F0At(c); });
+  return json;
+}
+
 }  // namespace
 
 std::string MapsDocument(const Stack& stack, const MapsOptions& options, const MapsResult& result,
@@ -66,11 +92,8 @@ std::string MapsDocument(const Stack& stack, const MapsOptions& options, const M
                  {"too_few_values", s.too_few}}},
                {"mean_rms", s.mean_rms},
                {"mean_lights_used", s.mean_used}};
-  if (options.recipe.share_alpha) {
-    const SharedWidth& w = result.shared;
-    json["shared"] = {{"alpha", std::isnan(w.log_alpha) ? Json() : Json(std::exp(w.log_alpha))},
-                      {"ln_alpha_stderr", std::isnan(w.error) ? Json() : Json(w.error)},
-                      {"texels", w.texels}};
+  for (const SharedNumbers::Group& group : result.shared.groups) {
+    json["shared"].push_back(SharedGroup(stack, options.recipe, group));
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lobefit/core/ellipsoid/off_center.h"
+
 namespace lobefit {
 namespace {
 
@@ -30,8 +32,8 @@ Fallback MedianFallback(const Maps& maps) {
   if (maps.lobe == MapLobe::kNone) return fallback;
   const std::size_t f0 = PlaneIndex(maps.planes, MapPart::kParameters, maps.channels == 1 ? "f0.Y" : "f0.R");
   for (int c = 0; c < maps.channels; ++c) fallback.f0[c] = MedianOf(maps.rows.values[f0 + static_cast<std::size_t>(c)]);
-  const char* alpha = maps.lobe == MapLobe::kGgx ? "alpha" : "alpha_x";
-  fallback.alpha = MedianOf(maps.rows.values[PlaneIndex(maps.planes, MapPart::kParameters, alpha)]);
+  fallback.alpha =
+      MedianOf(maps.rows.values[PlaneIndex(maps.planes, MapPart::kParameters, WidestAlpha(maps.lobe))]);
   return fallback;
 }
 
@@ -50,8 +52,14 @@ RelitTexel RelitTexelAt(const Maps& maps, std::size_t texel, const Fallback& fal
   if (maps.lobe == MapLobe::kNone || none) return result;
   const bool one = maps.lobe == MapLobe::kGgx;
   double x = at(alpha), y = one ? x : at(alpha + 1), angle = one ? 0 : at(alpha + 2) * kPi / 180;
-  if (std::isnan(x) || std::isnan(y) || std::isnan(angle)) x = y = fallback.alpha, angle = 0;
+  const bool leans = maps.lobe == MapLobe::kEllipsoid;
+  double tilt[2] = {leans ? at(alpha + 3) * kPi / 180 : 0, leans ? at(alpha + 4) * kPi / 180 : 0};
+  if (std::isnan(x + y + angle + tilt[0] + tilt[1])) x = y = fallback.alpha, angle = tilt[0] = tilt[1] = 0;
   point.width = one ? std::array<double, 3>{std::log(x), 0, std::log(x)} : WidthsOf(x, y, angle);
+  if (leans && !std::isnan(x)) {
+    const SlopeCoordinates slopes = SlopeCoordinatesFromEllipsoid({x, y, tilt[0], tilt[1], -angle});
+    point.slope = {slopes.v[0], slopes.v[1]}, point.width = {slopes.v[2], slopes.v[3], slopes.v[4]};
+  }
   bool known = !std::isnan(x);
   for (std::size_t c = 0; c < channels; ++c) {
     point.f0[c] = std::isnan(at(f0 + c)) ? fallback.f0[c] : at(f0 + c);
@@ -61,15 +69,11 @@ RelitTexel RelitTexelAt(const Maps& maps, std::size_t texel, const Fallback& fal
   return result;
 }
 
-Relighting::Relighting(const Maps& maps, const std::vector<Vec3>& lights, bool schlick, const Fallback& fallback)
+Relighting::Relighting(const Maps& maps, const LightPaths& paths, bool schlick, const Fallback& fallback)
     : maps_(maps), schlick_(schlick), fallback_(fallback) {
-  lights_.Resize(lights.size());
-  MoveLights(lights);
+  lights_.Resize(paths.wi.size());
+  Move(paths);
   shape_.Resize(lights_.padded);
-}
-
-void Relighting::MoveLights(const std::vector<Vec3>& lights) {
-  for (std::size_t l = 0; l < lights.size(); ++l) lights_.Set(l, lights[l], schlick_);
 }
 
 void Relighting::Texel(std::size_t texel, double* values, std::size_t stride) {

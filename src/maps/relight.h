@@ -19,20 +19,20 @@ Fallback MedianFallback(const Maps& maps);
 struct RelitTexel {
   bool hidden = false;            // it has no normal
   MapLobe lobe = MapLobe::kNone;  // kNone too where none is by evidence or its numbers are not known
-  // Normal and widths as in engine/model.h; diffuse is the albedo, f0 the stack's, and the width that of `fallback`
-  // where it is not determined.
+  // Normal, slopes and widths as in engine/model.h; diffuse is the albedo, f0 the stack's, and the width that of
+  // `fallback` where it is not determined.
   MapPoint point;
 };
 // All planes of the part "parameters", and the status, must be read.
 RelitTexel RelitTexelAt(const Maps& maps, std::size_t texel, const Fallback& fallback);
 
-// f_r cos_theta_i of one texel after another under distant lights, as the engine defines it (engine/model.h).
+// f_r cos_theta_i of one texel after another, as the engine defines it (engine/model.h).
 class Relighting {
  public:
   // `maps` as for RelitTexelAt; they must outlive this.
-  Relighting(const Maps& maps, const std::vector<Vec3>& lights, bool schlick, const Fallback& fallback);
-  // Moves the lights, as many as before.
-  void MoveLights(const std::vector<Vec3>& lights);
+  Relighting(const Maps& maps, const LightPaths& paths, bool schlick, const Fallback& fallback);
+  // Moves lights and cameras, as many as before.
+  void Move(const LightPaths& paths) { lights_.Set(paths, schlick_); }
   // values[channel stride + light]; NaN where the texel has no normal. Not for several threads at once.
   void Texel(std::size_t texel, double* values, std::size_t stride);
 

@@ -29,21 +29,12 @@ Rows Within(const Rows& ranges, std::size_t first, std::size_t end) {
   return within;
 }
 
-// Kept in the journal: every shard and every rerun takes the same width.
-SharedWidth SharedWidthOf(const Stack& stack, const MapsOptions& options, const FittedLights& lights,
-                          const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::exists(file, error)) {
-    const FileBytes bytes(file);
-    const std::vector<std::string_view> words = SplitBlanks(Trim(bytes.bytes()));
-    const std::optional<double> log_alpha = words.size() == 3 ? ParseDouble(words[0]) : std::nullopt;
-    const std::optional<double> stderr_value = words.size() == 3 ? ParseDouble(words[1]) : std::nullopt;
-    const std::optional<long long> texels = words.size() == 3 ? ParseInteger(words[2]) : std::nullopt;
-    if (log_alpha && stderr_value && texels) return {*log_alpha, *stderr_value, static_cast<std::size_t>(*texels)};
-  }
-  const SharedWidth shared = EstimateSharedWidth(stack, options.recipe, lights, options.threads);
-  WriteFileAtomically(
-      file, fmt::format("{} {} {}\n", FormatDouble(shared.log_alpha), FormatDouble(shared.error), shared.texels));
+// Kept in the journal: every shard and every rerun takes the same numbers.
+SharedNumbers SharedNumbersOf(const Stack& stack, const MapsOptions& options, const FittedLights& lights,
+                              const std::filesystem::path& file) {
+  if (const std::optional<SharedNumbers> kept = ReadShared(file)) return *kept;
+  SharedNumbers shared = EstimateShared(stack, options.recipe, lights, options.threads);
+  WriteShared(shared, file);
   return shared;
 }
 
@@ -51,8 +42,7 @@ void Count(const MapRows& rows, const std::vector<MapPlane>& planes, MapLobe lob
   const std::size_t status = PlaneIndex(planes, MapPart::kQuality, "status");
   const std::size_t rms = PlaneIndex(planes, MapPart::kQuality, "rms"),
                     used = PlaneIndex(planes, MapPart::kQuality, "used");
-  const std::size_t alpha =
-      PlaneIndex(planes, MapPart::kParameters, lobe == MapLobe::kGgxAnisotropic ? "alpha_x" : "alpha");
+  const std::size_t alpha = PlaneIndex(planes, MapPart::kParameters, WidestAlpha(lobe));
   for (std::size_t t = 0; t < rows.rows * rows.width; ++t) {
     const auto bits = static_cast<unsigned>(rows.values[status][t]);
     if ((bits & kMapOutside) != 0) continue;
@@ -71,7 +61,7 @@ void Count(const MapRows& rows, const std::vector<MapPlane>& planes, MapLobe lob
 
 void WriteResults(const Stack& stack, const MapsOptions& options, const MapJournal& journal, const std::string& digest,
                   const std::string& command, MapsResult* result) {
-  const std::vector<MapPlane> planes = PlanesFor(options.recipe.rules.lobe, static_cast<int>(stack.channels));
+  const std::vector<MapPlane> planes = PlanesFor(KindOf(options.recipe, stack));
   const std::filesystem::path stem = options.folder / options.name, exr = stem.string() + ".maps.exr";
   MapsSummary& summary = result->summary;
   WriteMapsExr(
@@ -103,7 +93,7 @@ MapsResult RunMaps(const Stack& stack, const MapsOptions& options, const std::st
   std::string all = digest + RecipeText(options.recipe) + Version();
   for (const std::size_t light : options.left_out) all += fmt::format(" {}", light);
   const std::string key = Sha256Hex(all);
-  const std::size_t planes = PlanesFor(options.recipe.rules.lobe, static_cast<int>(stack.channels)).size();
+  const std::size_t planes = PlanesFor(KindOf(options.recipe, stack)).size();
   MapJournal journal(JournalFolder(options), key, stack.width, stack.height, planes);
   MapsResult result;
   const std::size_t first = options.rows ? options.rows->first : 0,
@@ -111,14 +101,14 @@ MapsResult RunMaps(const Stack& stack, const MapsOptions& options, const std::st
   const std::filesystem::path shared_file = JournalFolder(options) / (key.substr(0, 16) + ".shared");
   const auto start = std::chrono::steady_clock::now();
   if (!options.merge || journal.Missing().empty()) {
-    if (options.recipe.share_alpha) result.shared = SharedWidthOf(stack, options, lights, shared_file);
+    if (options.recipe.shares.Any()) result.shared = SharedNumbersOf(stack, options, lights, shared_file);
   }
   if (!options.merge) {
     const Rows missing = Within(journal.Missing(), first, end);
     for (const auto& [a, b] : missing) {
       for (std::size_t t = a * stack.width; t < b * stack.width; ++t) result.fitted_texels += stack.Holds(t) ? 1 : 0;
     }
-    FitBands(stack, options.recipe, lights, result.shared.log_alpha, missing, options.threads,
+    FitBands(stack, options.recipe, lights, result.shared, missing, options.threads,
              [&](const MapRows& band) { journal.Write(band); });
     journal.Refresh();
   }

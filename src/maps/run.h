@@ -10,7 +10,7 @@
 #include "lobefit/maps/output/exr.h"
 #include "lobefit/maps/output/previews.h"
 #include "lobefit/maps/recipe.h"
-#include "lobefit/maps/shared_width.h"
+#include "lobefit/maps/shared_numbers.h"
 #include "lobefit/maps/stack/stack.h"
 
 namespace lobefit {
@@ -38,7 +38,7 @@ struct MapsResult {
   std::vector<std::pair<std::size_t, std::size_t>> missing;  // rows, where not complete
   std::vector<std::filesystem::path> written;
   MapsSummary summary;
-  SharedWidth shared;
+  SharedNumbers shared;
   double fit_seconds = 0;
   std::size_t fitted_texels = 0;  // in this process
 };

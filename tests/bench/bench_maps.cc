@@ -21,7 +21,6 @@
 #include "lobefit/base/threads.h"
 #include "lobefit/fit/fit_many.h"
 #include "lobefit/maps/bands.h"
-#include "lobefit/maps/shared_width.h"
 #include "lobefit/maps/synthetic/hills.h"
 #include "lobefit/maps/synthetic/write_stack.h"
 #include "lobefit/synthesis/random.h"
@@ -49,7 +48,7 @@ int Normals(int argc, char** argv) {
   int threads = HardwareThreads();
   for (int i = 4; i < argc; ++i) {
     const std::string word = argv[i];
-    if (word == "--share") recipe.share_alpha = true;
+    if (word == "--share") recipe.shares.over[static_cast<std::size_t>(Shared::kAlpha)] = ShareOver::kImage;
     if (word == "--loss") recipe.rules.loss = std::atof(argv[++i]);
     if (word == "--shadow") recipe.rules.shadow = std::atof(argv[++i]);
     if (word == "--always") recipe.rules.choice = LobeChoice::kAlways;
@@ -71,16 +70,16 @@ int Normals(int argc, char** argv) {
   }
   const FittedLights lights = LightsWithout(stack, {});
   const double start = Seconds();
-  SharedWidth shared;
-  if (recipe.share_alpha) shared = EstimateSharedWidth(stack, recipe, lights, threads);
+  SharedNumbers shared;
+  if (recipe.shares.Any()) shared = EstimateShared(stack, recipe, lights, threads);
   std::vector<MapRows> bands;
   std::mutex mutex;
-  FitBands(stack, recipe, lights, shared.log_alpha, {{0, stack.height}}, threads, [&](const MapRows& band) {
+  FitBands(stack, recipe, lights, shared, {{0, stack.height}}, threads, [&](const MapRows& band) {
     const std::lock_guard<std::mutex> lock(mutex);
     bands.push_back(band);
   });
   const double seconds = Seconds() - start;
-  const std::vector<MapPlane> planes = PlanesFor(recipe.rules.lobe, static_cast<int>(stack.channels));
+  const std::vector<MapPlane> planes = PlanesFor(KindOf(recipe, stack));
   const std::size_t error_at = PlaneIndex(planes, MapPart::kErrors, "normal.angle_deg");
   std::vector<std::pair<double, double>> texels;  // stated error, true error
   std::size_t undetermined = 0;
@@ -98,7 +97,7 @@ int Normals(int argc, char** argv) {
   }
   std::sort(texels.begin(), texels.end());
   std::printf("texels %zu, not determined %zu, %.1f s\n", texels.size(), undetermined, seconds);
-  if (recipe.share_alpha) std::printf("shared alpha %.4f\n", std::exp(shared.log_alpha));
+  if (recipe.shares.Any()) std::printf("shared alpha %.4f\n", std::exp(shared.groups[0].held.point.width[0]));
   for (const int percent : {100, 90, 75, 50}) {
     const std::size_t count = texels.size() * static_cast<std::size_t>(percent) / 100;
     std::vector<double> errors, stated;
@@ -124,8 +123,8 @@ int ShadedHills() {
       double mean[2];
       std::size_t no_lobe = 0, determined = 0;
       for (const bool shaded : {false, true}) {
-        TexelFitter fitter(rules, lights, 3);
-        Relighting relighting(hills.maps, lights, true, {});
+        TexelFitter fitter(rules, {lights, {}}, 3);
+        Relighting relighting(hills.maps, {lights, {}}, true, {});
         std::vector<double> errors, exact(3 * lights.size());
         std::vector<float> values(exact.size());
         for (std::size_t t = 0; t < size * size; t += 3) {
@@ -137,7 +136,7 @@ int ShadedHills() {
             const double lit = shaded && InCastShadow(hills, t, lights[l]) ? 0.02 : 1;
             values[i] = static_cast<float>(exact[i] * lit * (1 + 0.02 * random.Normal()) + 0.001 * random.Normal());
           }
-          const TexelFit fit = fitter.Fit(values.data(), lights.size(), kNan);
+          const TexelFit fit = fitter.Fit(values.data(), lights.size());
           const Vec3 truth = {hills.maps.rows.values[0][t], hills.maps.rows.values[1][t], hills.maps.rows.values[2][t]};
           if (!std::isnan(fit.normal.z)) errors.push_back(Angle(fit.normal, truth));
           if (shaded) no_lobe += (fit.status & kMapNoLobe) != 0 ? 1 : 0, determined += std::isnan(fit.alpha_x) ? 0 : 1;
@@ -179,8 +178,8 @@ int Speed(bool quick) {
   const std::vector<Vec3> lights = DomeLights(96, 60 * kPi / 180);
   MapRules rules;
   rules.schlick = true, rules.choice = LobeChoice::kAlways;
-  TexelFitter fitter(rules, lights, 3);
-  Relighting relighting(hills.maps, lights, true, {});
+  TexelFitter fitter(rules, {lights, {}}, 3);
+  Relighting relighting(hills.maps, {lights, {}}, true, {});
   std::vector<std::vector<float>> values;
   std::vector<double> exact(3 * lights.size());
   std::vector<Samples> samples;
@@ -206,7 +205,7 @@ int Speed(bool quick) {
   std::vector<TexelFit> fits;
   std::vector<MapPoint> points(texels);
   for (std::size_t k = 0; k < texels; ++k)
-    fits.push_back(fitter.Fit(values[k].data(), lights.size(), kNan, &points[k]));
+    fits.push_back(fitter.Fit(values[k].data(), lights.size(), {}, &points[k]));
   const double ours = (Seconds() - start) / static_cast<double>(texels);
   double iterations = 0;
   for (const TexelFit& fit : fits) iterations += fit.iterations;

@@ -24,7 +24,10 @@ inline int FuzzStack(StackFiles (*read)(const std::filesystem::path&), const std
       if (!(std::fabs(Norm(light.direction) - 1) < 1e-9)) std::abort();
       if (stack.near && !(light.place.z > 0 && std::isfinite(Norm(light.place)))) std::abort();
     }
-    if (stack.near && !(stack.near->width_mm > 0 && std::isfinite(stack.near->reference_mm))) std::abort();
+    if (stack.near && !(stack.width_mm > 0 && std::isfinite(stack.near->reference_mm))) std::abort();
+    for (const Vec3& camera : stack.cameras) {
+      if (!(stack.width_mm > 0 && camera.z > 0 && std::isfinite(Norm(camera)))) std::abort();
+    }
   } catch (const InputError&) {
   }
   return 0;

@@ -29,13 +29,13 @@ std::map<std::string, Held> CoverageOf(MapLobe lobe, std::size_t size, LobeChoic
     test::TexelValues values(hills.maps, lights, 0.02, 0.002);
     MapRules rules;
     rules.lobe = lobe, rules.schlick = true, rules.choice = choice;
-    TexelFitter fitter(rules, lights, 3);
+    TexelFitter fitter(rules, {lights, {}}, 3);
     std::map<std::string, Held>& held = parts[row];
     for (std::size_t t = row * size; t < (row + 1) * size; ++t) {
       const auto truth = [&](const char* name) { return test::At(hills.maps, MapPart::kParameters, name, t); };
       const double alpha = truth(lobe == MapLobe::kGgx ? "alpha" : "alpha_x");
       if (std::isnan(alpha)) continue;
-      const TexelFit fit = fitter.Fit(values.Of(t, 7).data(), lights.size(), kNan);
+      const TexelFit fit = fitter.Fit(values.Of(t, 7).data(), lights.size());
       const Vec3 n = test::NormalAt(hills.maps, t);
       held["normal.x"].Add(fit.normal.x, n.x, fit.normal_error.x);
       held["normal.y"].Add(fit.normal.y, n.y, fit.normal_error.y);

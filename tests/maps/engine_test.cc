@@ -31,7 +31,7 @@ TEST_P(EachLobe, AgreesWithCoreInTheTurnedFrame) {
   const std::vector<Vec3> directions = DomeLights(50, 85 * kDegree);
   LightArrays lights;
   lights.Resize(directions.size());
-  for (std::size_t l = 0; l < directions.size(); ++l) lights.Set(l, directions[l], true);
+  for (std::size_t l = 0; l < directions.size(); ++l) lights.Set(l, directions[l], {0, 0, 1}, true);
   ShapeArrays shape;
   shape.Resize(lights.padded);
   EvaluateShape(GetParam(), point, lights, false, &shape);
@@ -64,7 +64,7 @@ TEST_P(EachLobe, DerivativesAreThoseOfTheCost) {
   data.Resize(directions.size());
   RandomNumbers random(4);
   for (std::size_t l = 0; l < directions.size(); ++l) {
-    data.lights.Set(l, directions[l], true);
+    data.lights.Set(l, directions[l], {0, 0, 1}, true);
     for (int c = 0; c < 3; ++c) data.value[c][l] = random.Uniform();
   }
   data.scale = 0.7;
@@ -116,7 +116,7 @@ TEST_P(EachModel, MatrixAndErrorsAreThoseOfTheirDefinitions) {
   MapVector gradient;
   MapMatrix hessian;
   // Values near the model's, with noise and an outlier.
-  for (std::size_t l = 0; l < directions.size(); ++l) data.lights.Set(l, directions[l], true);
+  for (std::size_t l = 0; l < directions.size(); ++l) data.lights.Set(l, directions[l], {0, 0, 1}, true);
   const double loss = 0.1;
   objective.Derivatives(model, data, point, loss, Curvature::kWhole, &gradient, &hessian);
   RandomNumbers random(6);
@@ -128,7 +128,7 @@ TEST_P(EachModel, MatrixAndErrorsAreThoseOfTheirDefinitions) {
   }
   objective.Derivatives(model, data, point, loss, Curvature::kWhole, &gradient, &hessian);
   const MapErrors errors =
-      ErrorsOf(model, data, point, {.least_width = -5, .most_width = 0, .most_f0 = 1e6}, loss, &objective);
+      ErrorsOf(model, data, point, {.amplitudes = {false, false, 1e6}, .least_width = -5, .most_width = 0}, loss, &objective);
   ASSERT_TRUE(errors.regular);
   const auto unknowns = static_cast<std::size_t>(model.Unknowns());
   const MapFrame frame = FrameOf(point.normal);
@@ -200,10 +200,10 @@ TEST_P(EachLobe, NoiseFreeTexelsAreRecovered) {
   test::TexelValues values(hills.maps, lights, 0, 0);
   MapRules rules;
   rules.lobe = GetParam(), rules.schlick = true;
-  TexelFitter fitter(rules, lights, 3);
+  TexelFitter fitter(rules, {lights, {}}, 3);
   const char* width = GetParam() == MapLobe::kGgx ? "alpha" : "alpha_x";
   for (std::size_t t = 0; t < 24 * 24; ++t) {
-    const TexelFit fit = fitter.Fit(values.Of(t, 1).data(), lights.size(), kNan);
+    const TexelFit fit = fitter.Fit(values.Of(t, 1).data(), lights.size());
     EXPECT_LT(test::AngleBetween(fit.normal, test::NormalAt(hills.maps, t)), 1e-5 * kDegree) << t;
     for (int c = 0; c < 3; ++c) {
       const std::string channel(1, "RGB"[c]);
@@ -229,16 +229,16 @@ TEST(TexelFitter, OutliersAndSaturationCostLittle) {
   test::TexelValues values(hills.maps, lights, 0.01, 0);
   MapRules rules;
   rules.schlick = true;
-  TexelFitter fitter(rules, lights, 3);
+  TexelFitter fitter(rules, {lights, {}}, 3);
   double clean = 0, spoilt = 0;
   for (std::size_t t = 0; t < 16 * 16; ++t) {
     std::vector<float> v = values.Of(t, 1);
-    clean += test::AngleBetween(fitter.Fit(v.data(), lights.size(), kNan).normal, test::NormalAt(hills.maps, t));
+    clean += test::AngleBetween(fitter.Fit(v.data(), lights.size()).normal, test::NormalAt(hills.maps, t));
     for (std::size_t l = 0; l < lights.size(); l += 8) {
       for (std::size_t c = 0; c < 3; ++c) v[c * lights.size() + l] *= 0.4F;  // half a shadow
     }
     for (float& value : v) value = value > 0.3F ? std::numeric_limits<float>::infinity() : value;
-    spoilt += test::AngleBetween(fitter.Fit(v.data(), lights.size(), kNan).normal, test::NormalAt(hills.maps, t));
+    spoilt += test::AngleBetween(fitter.Fit(v.data(), lights.size()).normal, test::NormalAt(hills.maps, t));
   }
   EXPECT_LT(spoilt, 2 * clean);
 }
@@ -246,10 +246,10 @@ TEST(TexelFitter, OutliersAndSaturationCostLittle) {
 TEST(TexelFitter, SaysWhatIsNotDetermined) {
   const std::vector<Vec3> lights = DomeLights(40, 60 * kDegree);
   MapRules rules;
-  TexelFitter fitter(rules, lights, 1);
+  TexelFitter fitter(rules, {lights, {}}, 1);
   const std::vector<float> dark(lights.size(), 0.0F), nothing(lights.size(), std::numeric_limits<float>::quiet_NaN());
   for (const std::vector<float>& values : {dark, nothing}) {
-    const TexelFit fit = fitter.Fit(values.data(), lights.size(), kNan);
+    const TexelFit fit = fitter.Fit(values.data(), lights.size());
     EXPECT_EQ(fit.status, kMapTooFew | kMapNotDetermined);
     EXPECT_TRUE(std::isnan(fit.normal.z));
     EXPECT_TRUE(std::isnan(fit.diffuse[0]));
@@ -258,7 +258,7 @@ TEST(TexelFitter, SaysWhatIsNotDetermined) {
   std::vector<float> matt;
   RandomNumbers random(3);
   for (const Vec3& w : lights) matt.push_back(static_cast<float>(w.z * 0.1 * (1 + 0.02 * random.Normal())));
-  const TexelFit fit = fitter.Fit(matt.data(), lights.size(), kNan);
+  const TexelFit fit = fitter.Fit(matt.data(), lights.size());
   EXPECT_EQ(fit.status, kMapNoLobe);
   EXPECT_TRUE(std::isnan(fit.alpha_x));
   EXPECT_LT(test::AngleBetween(fit.normal, {0, 0, 1}), 0.01);

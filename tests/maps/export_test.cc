@@ -363,7 +363,7 @@ TEST_F(ExportedMaps, TheMapsModelIsTheEngines) {
   for (const MapLobe lobe : {MapLobe::kGgx, MapLobe::kGgxAnisotropic}) {
     const Hills hills = MakeHills(kSize, lobe);
     const std::vector<Vec3> lights = DomeLights(20, 80 * kPi / 180);
-    Relighting relighting(hills.maps, lights, true, {});
+    Relighting relighting(hills.maps, {lights, {}}, true, {});
     const MapNumbers numbers(hills.maps, true, kNan);
     for (std::size_t t = 0; t < kSize * kSize; t += 7) {
       std::vector<double> values(3 * lights.size());

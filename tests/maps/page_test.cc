@@ -39,7 +39,7 @@ class MapsPageTest : public FolderTest, public testing::WithParamInterface<MapLo
 
   // The program's own picture under a light with the page's exposure.
   nlohmann::json Truth(const Vec3& light, double exposure) {
-    Relighting relighting(hills_.maps, {light}, true, page_.fallback);
+    Relighting relighting(hills_.maps, {{light}, {}}, true, page_.fallback);
     std::string bytes;
     for (std::size_t t = 0; t < 24 * 24; ++t) {
       double values[3];

@@ -223,7 +223,7 @@ TEST_F(StackReading, DomeOfRelightLab) {
   dome("\"imageWidth\": 12, \"lightConfiguration\": \"lights3d\", \"positions3d\": " + points(40));
   const Stack near = OpenStack(folder_ / "d.dome", {});
   ASSERT_TRUE(near.near.has_value());
-  EXPECT_EQ(near.near->width_mm, 12);
+  EXPECT_EQ(near.width_mm, 12);
   EXPECT_EQ(near.lights[2].place.z, 40);
   dome("\"lightConfiguration\": \"spherical\", \"positionsSphere\": " + points(40));
   ExpectRefused("need imageWidth");

@@ -18,7 +18,7 @@ class TexelValues {
       : lights_(std::move(lights)),
         multiplicative_(multiplicative),
         additive_(additive),
-        relighting_(maps, lights_, true, {}),
+        relighting_(maps, {lights_, {}}, true, {}),
         channels_(static_cast<std::size_t>(maps.channels)) {}
 
   const std::vector<float>& Of(std::size_t texel, std::uint64_t seed) {

@@ -136,7 +136,7 @@ int DescribeStack(const std::filesystem::path& path, const StackOptions& options
   text += fmt::format("  texels       {}{}\n", stack.Texels(), stack.mask.empty() ? "" : " within the mask");
   text += fmt::format("  lights       theta {:.1f} to {:.1f} degrees, {}\n", low, high,
                       stack.near ? fmt::format("near: {:.4g} mm from the middle of a picture of {:.4g} mm (mean)",
-                                               stack.near->reference_mm, stack.near->width_mm)
+                                               stack.near->reference_mm, stack.width_mm)
                                  : "distant");
   text += fmt::format("  unit         {}\n",
                       stack.calibrated ? "f_r cos_theta_i, 1/sr" : "one unknown factor of f_r cos_theta_i");

@@ -33,6 +33,10 @@ void StackSynthesisOptions::AddTo(CLI::App* app) {
                   "distance of the lights, in widths of the picture (default: far away)")
       ->check(Within(0.6, 1000))
       ->group(what);
+  app->add_option("--camera-distance", camera_distance_,
+                  "distance of a camera above the middle, in widths of the picture (default: far away)")
+      ->check(Within(0.6, 1000))
+      ->group(what);
   app->add_option("--size", size_, "texels a side of hills (default 64)")->check(CLI::Range(8, 8192))->group(what);
   app->add_option("--steepness", steepness_, "factor of the height of hills (default 1)")
       ->check(Within(0, 5))
@@ -45,7 +49,7 @@ int StackSynthesisOptions::Write(const std::string& source, const SynthesisOptio
                                  const std::string& out) const {
   StackSynthesis stack;
   stack.noise = synthesis.ChosenNoise(), stack.seed = synthesis.seed(), stack.bits = bits_;
-  stack.distance = light_distance_;
+  stack.distance = light_distance_, stack.camera_distance = camera_distance_;
   if (const std::optional<long long> count = ParseInteger(lights_)) {
     if (*count < 4 || *count > 4096) throw UsageError("--lights: 4 to 4096 lights are expected");
     stack.lights = DomeLights(static_cast<std::size_t>(*count), light_theta_max_deg_ * kPi / 180);

@@ -21,7 +21,7 @@ class StackSynthesisOptions {
   std::string lights_ = "96";
   std::size_t size_ = 64;
   int bits_ = 16;
-  double light_theta_max_deg_ = 65, light_distance_ = 0, steepness_ = 1;
+  double light_theta_max_deg_ = 65, light_distance_ = 0, camera_distance_ = 0, steepness_ = 1;
 };
 
 }  // namespace lobefit

@@ -11,6 +11,7 @@
 
 #include "lobefit/batch/results/results.h"
 #include "lobefit/maps/run.h"
+#include "lobefit/maps/stack/normal_map.h"
 
 namespace lobefit {
 namespace {
@@ -57,6 +58,28 @@ double Percent(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
+// What texels share, of one group of them.
+std::string SharedLine(const SharedNumbers& shared, std::size_t group, MapLobe lobe) {
+  const SharedNumbers::Group& g = shared.groups[group];
+  const HeldNumbers& held = g.held;
+  std::vector<std::string> words;
+  if (held.normal) {
+    const Vec3& n = held.point.normal;
+    words.push_back(fmt::format("normal ({:.4f}, {:.4f}, {:.4f})", n.x, n.y, n.z));
+  }
+  if (held.slope) words.push_back(fmt::format("mean slope ({:.4f}, {:.4f})", held.point.slope[0], held.point.slope[1]));
+  if (held.width && lobe == MapLobe::kGgx) {
+    words.push_back(fmt::format("alpha {:.4f}, +- {:.2g} of its logarithm", std::exp(held.point.width[0]), g.error[2]));
+  } else if (held.width) {
+    words.emplace_back("both alphas and their direction");
+  }
+  if (held.diffuse) words.emplace_back("diffuse");
+  if (held.f0) words.emplace_back("f0");
+  const std::string of = shared.clusters.centers.empty() ? "the image" : fmt::format("cluster {}", group + 1);
+  return fmt::format("  shared       {}: {} ({} texels asked)\n", of, words.empty() ? "nothing is determined" : Join(words),
+                     g.texels);
+}
+
 std::string Summary(const MapsResult& result, const MapsOptions& options) {
   const MapsSummary& s = result.summary;
   std::string text = fmt::format("  texels       {}", s.texels);
@@ -66,9 +89,10 @@ std::string Summary(const MapsResult& result, const MapsOptions& options) {
   text += fmt::format("\n  normal       determined in {:.1f} %\n", Percent(s.normal, s.texels));
   if (options.recipe.rules.lobe != MapLobe::kNone) {
     text += fmt::format("  lobe         in {:.1f} %", Percent(s.lobe, s.texels));
-    text += options.recipe.share_alpha ? fmt::format("; alpha {:.4f} of the whole image, +- {:.2g} of its logarithm\n",
-                                                     std::exp(result.shared.log_alpha), result.shared.error)
-                                       : fmt::format("; alpha determined in {:.1f} %\n", Percent(s.alpha, s.texels));
+    text += fmt::format("; alpha determined in {:.1f} %\n", Percent(s.alpha, s.texels));
+  }
+  for (std::size_t g = 0; g < result.shared.groups.size(); ++g) {
+    text += SharedLine(result.shared, g, options.recipe.rules.lobe);
   }
   if (s.too_few + s.not_converged + s.at_bound > 0) {
     text += fmt::format("  doubtful     {} with too few values, {} not converged, {} at a bound\n", s.too_few,
@@ -79,10 +103,21 @@ std::string Summary(const MapsResult& result, const MapsOptions& options) {
   return text;
 }
 
+// Files that a result must not replace.
+std::vector<std::filesystem::path> Inputs(const Stack& stack) {
+  std::vector<std::filesystem::path> inputs = stack.images;
+  inputs.insert(inputs.end(), stack.white.begin(), stack.white.end());
+  for (const std::filesystem::path& file : {stack.dark, stack.normal_map}) {
+    if (!file.empty()) inputs.push_back(file);
+  }
+  return inputs;
+}
+
 int RunMapsVerb(const MapsVerb& verb, const CommonOptions& common) {
   MapsOptions options;
   options.recipe = LoadMapRecipe(verb.recipe);
-  const Stack stack = OpenStack(verb.stack, verb.options);
+  Stack stack = OpenStack(verb.stack, verb.options);
+  if (!options.recipe.normal_map.empty()) SetNormalMap(options.recipe.normal_map, verb.normal_y == "down", &stack);
   options.recipe.rules.schlick = stack.calibrated;
   options.folder = verb.out;
   options.name = verb.name.empty() ? StackName(verb.stack) : ResultName(verb.name, verb.stack);
@@ -96,7 +131,7 @@ int RunMapsVerb(const MapsVerb& verb, const CommonOptions& common) {
   MakeFolder(options.folder);
   for (const char* ending :
        {".maps.exr", ".maps.json", ".normal.png", ".diffuse.png", ".f0.png", ".alpha.png", ".normal_error.png"}) {
-    CheckOutput(options.folder / (options.name + ending), stack.images);
+    CheckOutput(options.folder / (options.name + ending), Inputs(stack));
   }
   const MapsResult result = RunMaps(stack, options, common.command);
   if (!result.complete && options.merge) {
@@ -136,8 +171,8 @@ std::function<int()> SetUpMaps(CLI::App* app, CommonOptions* common) {
   app->add_option(
          "STACK", verb->stack,
          "a folder of DiLiGenT's layout, an RTI light file (.lp) or a RelightLab dome (.dome) beside its images, a "
-         "folder of images named by angles (tl045 pl090 tv000 pv000.png), or a stack.toml (or its folder); "
-         "images are PNG or OpenEXR")
+         "folder of images named by angles (tl045 pl090 tv000 pv000.png), a MaterialGAN capture (.json), or a "
+         "stack.toml (or its folder); images are PNG, JPEG, TIFF or OpenEXR")
       ->required();
   app->add_option("--recipe", verb->recipe, "what to fit: a recipe of fits/maps by name, or a file (default ggx-maps)");
   app->add_option("--out", verb->out, "folder of the results (default: here)");
@@ -149,7 +184,7 @@ std::function<int()> SetUpMaps(CLI::App* app, CommonOptions* common) {
                   "only rows A:B (A to B-1, from 0 at the top), into NAME.maps.part; --merge joins");
   app->add_flag("--merge", verb->merge,
                 "join the rows that runs with --rows have fitted; says which are missing (exit 5)");
-  app->add_option("--normal-y", verb->normal_y, "y of NAME.normal.png: up (OpenGL, glTF) or down (DirectX)")
+  app->add_option("--normal-y", verb->normal_y, "y of NAME.normal.png, and of a recipe's normal = \"map:FILE\": up (OpenGL, glTF) or down (DirectX)")
       ->check(CLI::IsMember({"up", "down"}));
   return [=] { return RunMapsVerb(*verb, *common); };
 }

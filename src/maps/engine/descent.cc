@@ -26,7 +26,8 @@ constexpr double kLeastRefused = 1e-3;
 
 // On the way to the same minimum.
 bool IsSame(const MapPoint& a, const MapPoint& b) {
-  return Dot(a.normal, b.normal) > 0.99999 && std::fabs(a.width[0] - b.width[0]) < 0.05 &&
+  return Dot(a.normal, b.normal) > 0.99999 && std::fabs(a.slope[0] - b.slope[0]) < 0.005 &&
+         std::fabs(a.slope[1] - b.slope[1]) < 0.005 && std::fabs(a.width[0] - b.width[0]) < 0.05 &&
          std::fabs(a.width[1] - b.width[1]) < 0.02 && std::fabs(a.width[2] - b.width[2]) < 0.05;
 }
 
@@ -38,6 +39,9 @@ struct Place {
 Place PlaceOf(const MapModel& model, const MapPoint& point, const MapBounds& bounds) {
   Place place;
   place.value.fill(0), place.low.fill(-1e300), place.high.fill(1e300);
+  for (int j = 0; j < 2 && !model.TurnsNormal(); ++j) {
+    place.value[j] = point.slope[j], place.low[j] = -bounds.most_slope, place.high[j] = bounds.most_slope;
+  }
   for (int j = 2; j < model.Shape(); ++j) {
     place.value[j] = point.width[j - 2];
     // The middle one of three, b, says how the two widths lean.
@@ -48,7 +52,7 @@ Place PlaceOf(const MapModel& model, const MapPoint& point, const MapBounds& bou
     place.value[model.DiffuseAt(c)] = point.diffuse[c], place.low[model.DiffuseAt(c)] = 0;
     if (model.lobe == MapLobe::kNone) continue;
     place.value[model.F0At(c)] = point.f0[c];
-    place.low[model.F0At(c)] = 0, place.high[model.F0At(c)] = bounds.most_f0;
+    place.low[model.F0At(c)] = 0, place.high[model.F0At(c)] = bounds.amplitudes.most_f0;
   }
   return place;
 }
@@ -57,14 +61,18 @@ Place PlaceOf(const MapModel& model, const MapPoint& point, const MapBounds& bou
 MapPoint Moved(const MapModel& model, const MapBounds& bounds, const MapPoint& from, const Place& place,
                const MapVector& step) {
   MapPoint to = from;
-  const MapFrame frame = FrameOf(from.normal);
-  to.normal = Normalized(frame.n + step[0] * frame.t + step[1] * frame.b);
-  if (to.normal.z < bounds.least_normal_z) {
+  const auto moved = [&](int j) { return std::clamp(place.value[j] + step[j], place.low[j], place.high[j]); };
+  if (!model.TurnsNormal()) {
+    to.slope = {moved(0), moved(1)};
+  } else if (!bounds.normal_held) {
+    const MapFrame frame = FrameOf(from.normal);
+    to.normal = Normalized(frame.n + step[0] * frame.t + step[1] * frame.b);
+  }
+  if (!bounds.normal_held && to.normal.z < bounds.least_normal_z) {
     const double flat = std::hypot(to.normal.x, to.normal.y), z = bounds.least_normal_z;
     const double keep = std::sqrt(1 - z * z) / flat;
     to.normal = {keep * to.normal.x, keep * to.normal.y, z};
   }
-  const auto moved = [&](int j) { return std::clamp(place.value[j] + step[j], place.low[j], place.high[j]); };
   for (int j = 2; j < model.Shape(); ++j) to.width[j - 2] = moved(j);
   for (int c = 0; c < model.channels; ++c) {
     to.diffuse[c] = moved(model.DiffuseAt(c));
@@ -76,11 +84,15 @@ MapPoint Moved(const MapModel& model, const MapBounds& bounds, const MapPoint& f
 std::array<bool, kMostUnknowns> HeldAt(const MapModel& model, const Place& place, const MapBounds& bounds,
                                        const MapVector& gradient) {
   std::array<bool, kMostUnknowns> held = {};
+  const AmplitudeBounds& amplitudes = bounds.amplitudes;
   for (int j = 0; j < model.Unknowns(); ++j) {
-    const bool is_width = j >= 2 && j < model.Shape();
-    held[j] = j < 2 ? bounds.normal_held
-                    : (is_width && bounds.width_held) || (place.value[j] <= place.low[j] && gradient[j] >= 0) ||
-                          (place.value[j] >= place.high[j] && gradient[j] <= 0);
+    const bool is_diffuse = j >= model.Shape() && (j - model.Shape()) % model.PerChannel() == 0;
+    const bool from_elsewhere = j < 2                 ? (model.TurnsNormal() ? bounds.normal_held : bounds.slope_held)
+                                : j < model.Shape() ? bounds.width_held
+                                : is_diffuse        ? amplitudes.diffuse_held
+                                                    : amplitudes.f0_held;
+    held[j] = from_elsewhere || (place.value[j] <= place.low[j] && gradient[j] >= 0) ||
+              (place.value[j] >= place.high[j] && gradient[j] <= 0);
   }
   return held;
 }
@@ -102,7 +114,7 @@ bool BoundedStep(int unknowns, const Place& place, const MapVector& gradient, co
     SolveFactorised(unknowns, factor, step);
     int leaving = -1;
     double most = 0;
-    for (int j = 2; j < unknowns; ++j) {
+    for (int j = 0; j < unknowns; ++j) {
       if (fixed[j]) {
         (*step)[j] = known[j];
         continue;
@@ -115,7 +127,7 @@ bool BoundedStep(int unknowns, const Place& place, const MapVector& gradient, co
       }
     }
     if (leaving < 0) break;
-    for (int j = 2; j < unknowns; ++j) known[j] = j == leaving || fixed[j] ? known[j] : 0;
+    for (int j = 0; j < unknowns; ++j) known[j] = j == leaving || fixed[j] ? known[j] : 0;
     fixed[leaving] = true;
   }
   *promised = 0;
@@ -150,6 +162,14 @@ bool AddSecant(int unknowns, const std::array<bool, kMostUnknowns>& held, const 
 }
 
 }  // namespace
+
+int FreeUnknowns(const MapModel& model, const MapBounds& bounds) {
+  const int turns = (model.TurnsNormal() ? bounds.normal_held : bounds.slope_held) ? 0 : 2;
+  const int widths = bounds.width_held ? 0 : model.Shape() - 2;
+  const int amplitudes = (bounds.amplitudes.diffuse_held ? 0 : 1) +
+                         (model.lobe == MapLobe::kNone || bounds.amplitudes.f0_held ? 0 : 1);
+  return turns + widths + model.channels * amplitudes;
+}
 
 std::array<bool, kMostUnknowns> HeldUnknowns(const MapModel& model, const MapPoint& point, const MapBounds& bounds,
                                              const MapVector& gradient) {
@@ -203,7 +223,7 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
         next = Moved(model, bounds, at.point, place, step);
         // Near the minimum nearly all steps are taken: their derivatives come with the cost.
         cost = near ? objective->Derivatives(model, data, next, loss, Curvature::kClipped, &next_gradient, next_hessian)
-                    : objective->CostOfShape(model, data, objective->weight(), loss, bounds.most_f0, &next);
+                    : objective->CostOfShape(model, data, objective->weight(), loss, bounds.amplitudes, &next);
         return (at.cost - cost) / promised;
       };
       double quality = attempt();

@@ -7,11 +7,14 @@ namespace lobefit {
 
 // Held and bounded unknowns of a texel.
 struct MapBounds {
-  bool normal_held = false, width_held = false;
+  bool normal_held = false, slope_held = false, width_held = false;
+  AmplitudeBounds amplitudes;
   double least_width = 0, most_width = 0;  // of ln alpha, ln a, ln c
-  double most_f0 = 0;                      // in the texel's unit
-  double least_normal_z = 0.02;
+  double least_normal_z = 0.02, most_slope = 1;
 };
+
+// What is left to fit.
+int FreeUnknowns(const MapModel& model, const MapBounds& bounds);
 
 struct MapDescent {
   MapPoint point;

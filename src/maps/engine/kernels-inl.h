@@ -54,6 +54,10 @@ LOBEFIT_INLINE Lanes Larger(const Lanes& a, const Lanes& b) {
 LOBEFIT_INLINE void WhereLit(const Lanes& c, Lanes* x) {
   for (std::size_t p = 0; p < Lanes::kParts; ++p) x->part[p] = c.part[p] > 0.0 ? x->part[p] : Lanes::Part{};
 }
+// a where c < 0, else b.
+LOBEFIT_INLINE void WhereNegative(const Lanes& c, const Lanes& a, const Lanes& b, Lanes* x) {
+  for (std::size_t p = 0; p < Lanes::kParts; ++p) x->part[p] = c.part[p] < 0.0 ? a.part[p] : b.part[p];
+}
 LOBEFIT_INLINE double Total(const Lanes& s) {
   return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
 }
@@ -86,6 +90,7 @@ struct LogSum {
 #include "lobefit/maps/engine/cost_kernels-inl.h"
 #include "lobefit/maps/engine/matrix_kernels-inl.h"
 #include "lobefit/maps/engine/shape_kernels-inl.h"
+#include "lobefit/maps/engine/general_kernels-inl.h"
 
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums) {
   const bool lobe = terms.shape > 2, color = terms.channels == 3;

@@ -44,6 +44,7 @@ struct Kernels {
   decltype(&plain::IsotropicValue) isotropic_value;
   decltype(&plain::IsotropicGradient) isotropic_gradient;
   decltype(&plain::AnisotropicLobe) anisotropic_lobe;
+  decltype(&plain::GeneralLobe) general_lobe;
   decltype(&plain::SumAmplitudes) sum_amplitudes;
   decltype(&plain::CostOf) cost_of;
   decltype(&plain::RowsOf) rows_of;
@@ -55,7 +56,7 @@ struct Kernels {
 #define LOBEFIT_KERNELS(set)                                                                                 \
   Kernels {                                                                                                  \
     set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe, \
-        set::SumAmplitudes, set::CostOf, set::RowsOf, set::AddSquares, set::AddGram, set::MovesOf            \
+        set::GeneralLobe, set::SumAmplitudes, set::CostOf, set::RowsOf, set::AddSquares, set::AddGram, set::MovesOf            \
   }
 
 Kernels Choose() {
@@ -85,6 +86,10 @@ void IsotropicGradient(double alpha, const MapFrame& frame, const LightArrays& l
 }
 void AnisotropicLobe(const TwoWidths& widths, const LightArrays& lights, double* specular, double* const* dspecular) {
   kKernels.anisotropic_lobe(widths, lights, specular, dspecular);
+}
+void GeneralLobe(const TwoWidths& widths, const MeanSlope& slope, const LightArrays& lights, double* specular,
+                 double* const* dspecular) {
+  kKernels.general_lobe(widths, slope, lights, specular, dspecular);
 }
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums) {
   kKernels.sum_amplitudes(terms, weight, sums);

@@ -31,6 +31,13 @@ struct TwoWidths {
   MapFrame turned[2];
 };
 
+// Mean slopes of the lobe in the frame of the normal, and whether they, not turns of the normal, are the first two numbers
+// of the shape.
+struct MeanSlope {
+  double x, y;
+  bool is_free;
+};
+
 // What a texel's predictions are made of, over its padded lights: of shape.h, values, and how they are weighed.
 struct LightTerms {
   int shape = 2, channels = 1;  // numbers of the shape (2: no lobe), channels (1 or 3)
@@ -54,7 +61,7 @@ struct RowArrays {
 // (far from the minimum); clipped so that the matrix has no negative curvature (near it); or as it is (for errors).
 enum class Curvature { kNone, kClipped, kWhole };
 
-// shape.cc gives the formulas; 0 below the horizon.
+// shape.cc gives the formulas; 0 below the horizon. All but GeneralLobe take wo = +z.
 void Cosines(const Vec3& normal, const LightArrays& lights, double* cosine);
 void CosineDerivatives(const MapFrame& frame, const LightArrays& lights, double* by_t, double* by_b);
 void IsotropicValue(double alpha, const Vec3& normal, const LightArrays& lights, double* cosine, double* specular);
@@ -63,6 +70,10 @@ void IsotropicGradient(double alpha, const MapFrame& frame, const LightArrays& l
                        double* const* dcosine, double* const* dspecular);
 // dspecular: 5 arrays, or null.
 void AnisotropicLobe(const TwoWidths& widths, const LightArrays& lights, double* specular, double* const* dspecular);
+
+// Any wo; what the lobe's G1 would exceed 1 by is cut off. dspecular as above.
+void GeneralLobe(const TwoWidths& widths, const MeanSlope& slope, const LightArrays& lights, double* specular,
+                 double* const* dspecular);
 
 // By channels.
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums);

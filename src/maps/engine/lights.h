@@ -26,14 +26,23 @@ struct OnCacheLine {
 };
 using LightVector = std::vector<double, OnCacheLine<double>>;
 
-// Arrays of `count` lights, padded to a multiple of kLanes by lights along z whose `live` is 0. square = |h|^2 where h =
-// wi + wo with wo = +z; k is Schlick's (1 - cos_d)^5.
+// Unit vectors from a texel.
+struct LightPaths {
+  std::vector<Vec3> wi;  // to the lights
+  std::vector<Vec3> wo;  // to the camera of each photograph; empty: +z for all
+};
+
+// Arrays of `count` photographs: wi is (x, y, z), wo is (out_x, out_y, out_z). Padded to a multiple of kLanes by lights
+// along z whose `live` is 0. square = |h|^2 where h = wi + wo; k is Schlick's (1 - cos_d)^5.
 struct LightArrays {
   std::size_t count = 0, padded = 0;
-  LightVector x, y, z, square, k, live;
+  bool from_z = true;  // wo = +z for all, which the quicker kernels take for granted
+  LightVector x, y, z, out_x, out_y, out_z, square, k, live;
 
   void Resize(std::size_t lights);
-  void Set(std::size_t at, const Vec3& direction, bool schlick);
+  // As many as before.
+  void Set(const LightPaths& paths, bool schlick);
+  void Set(std::size_t at, const Vec3& wi, const Vec3& wo, bool schlick);
   void Copy(const LightArrays& from, std::size_t index, std::size_t at);
   // Makes the lights from `lights` on padding.
   void Close(std::size_t lights);

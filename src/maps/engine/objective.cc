@@ -11,17 +11,25 @@ double OrInfinite(double cost) { return std::isfinite(cost) ? cost : std::numeri
 
 }  // namespace
 
-void BestAmplitudes(const AmplitudeSums& sums, double most_b, double* a, double* b) {
+void BestAmplitudes(const AmplitudeSums& sums, const AmplitudeBounds& bounds, double* a, double* b) {
   const double det = sums.aa * sums.bb - sums.ab * sums.ab;
   const bool both = det > 1e-12 * sums.aa * sums.bb;
   const auto a_for = [&](double other) {
     return sums.aa > 0 ? std::max(0.0, (sums.ay - sums.ab * other) / sums.aa) : 0.0;
   };
+  if (bounds.f0_held) {
+    if (!bounds.diffuse_held) *a = a_for(*b);
+    return;
+  }
+  if (bounds.diffuse_held) {
+    *b = sums.bb > 0 ? std::clamp((sums.by - sums.ab * *a) / sums.bb, 0.0, bounds.most_f0) : 0;
+    return;
+  }
   *b = both ? (sums.by * sums.aa - sums.ay * sums.ab) / det : 0;
   *a = both ? (sums.ay * sums.bb - sums.by * sums.ab) / det : 0;
   if (both && *a < 0) *a = 0, *b = sums.by / sums.bb;
-  *b = std::clamp(*b, 0.0, most_b);
-  if (!both || *b <= 0 || *b >= most_b) *a = a_for(*b);
+  *b = std::clamp(*b, 0.0, bounds.most_f0);
+  if (!both || *b <= 0 || *b >= bounds.most_f0) *a = a_for(*b);
 }
 
 void TexelData::Resize(std::size_t padded) {
@@ -68,30 +76,30 @@ double TexelObjective::Cost(const MapModel& model, const TexelData& data, const 
   return OrInfinite(CostOf(terms_, nullptr));
 }
 
-double TexelObjective::CostAtBestAmplitudes(const MapModel& model, const LightVector& weight, double most_f0,
-                                            double* next_weight, MapPoint* point) {
+double TexelObjective::CostAtBestAmplitudes(const MapModel& model, const LightVector& weight,
+                                            const AmplitudeBounds& bounds, double* next_weight, MapPoint* point) {
   AmplitudeSums sums[kMostChannels] = {};
   SumAmplitudes(terms_, weight.data(), sums);
   for (std::size_t c = 0; c < static_cast<std::size_t>(model.channels); ++c) {
-    BestAmplitudes(sums[c], most_f0, &point->diffuse[c], &point->f0[c]);
+    BestAmplitudes(sums[c], bounds, &point->diffuse[c], &point->f0[c]);
   }
   TakeAmplitudes(model, *point);
   return OrInfinite(CostOf(terms_, next_weight));
 }
 
 double TexelObjective::CostOfShape(const MapModel& model, const TexelData& data, const LightVector& weight, double loss,
-                                   double most_f0, MapPoint* point) {
+                                   const AmplitudeBounds& bounds, MapPoint* point) {
   Shape(model, data, *point, false);
   terms_.loss = loss;
-  return CostAtBestAmplitudes(model, weight, most_f0, nullptr, point);
+  return CostAtBestAmplitudes(model, weight, bounds, nullptr, point);
 }
 
-double TexelObjective::CostOfStart(const MapModel& model, const TexelData& data, double loss, double most_f0,
-                                   MapPoint* point) {
+double TexelObjective::CostOfStart(const MapModel& model, const TexelData& data, double loss,
+                                   const AmplitudeBounds& bounds, MapPoint* point) {
   Shape(model, data, *point, false);
   terms_.loss = loss;
-  CostAtBestAmplitudes(model, data.lights.live, most_f0, trial_weight_.data(), point);
-  return CostAtBestAmplitudes(model, trial_weight_, most_f0, nullptr, point);
+  CostAtBestAmplitudes(model, data.lights.live, bounds, trial_weight_.data(), point);
+  return CostAtBestAmplitudes(model, trial_weight_, bounds, nullptr, point);
 }
 
 double TexelObjective::Derivatives(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,

@@ -14,8 +14,14 @@ struct TexelData {
   void Resize(std::size_t padded);
 };
 
-// a >= 0 and 0 <= b <= most_b that minimise sum w (a A + b B - y)^2.
-void BestAmplitudes(const AmplitudeSums& sums, double most_b, double* a, double* b);
+// What of a texel's amplitudes is held, and the largest f0, in its unit.
+struct AmplitudeBounds {
+  bool diffuse_held = false, f0_held = false;
+  double most_f0 = 0;
+};
+
+// a >= 0 and 0 <= b <= most_f0 that minimise sum w (a A + b B - y)^2; what is held stays.
+void BestAmplitudes(const AmplitudeSums& sums, const AmplitudeBounds& bounds, double* a, double* b);
 
 // cost = sum over lights of c^2 / 2 ln(1 + |r|^2 / c^2), Cauchy's loss of the light's residuals r in all channels
 // together, so that a cast shadow or a highlight of something else is one outlier.
@@ -24,14 +30,15 @@ class TexelObjective {
   void Resize(std::size_t padded);
   // Infinite where it is no number.
   double Cost(const MapModel& model, const TexelData& data, const MapPoint& point, double loss);
-  // The same where the amplitudes are not those of the point but, within 0 and most_f0, the best for its shape under
+  // The same where the amplitudes are not those of the point but, within their bounds, the best for its shape under
   // `weight` of the lights; they are stored in the point. With the weights of the last call of Derivatives, long curved
   // valleys between width and f0 are so left at one step.
   double CostOfShape(const MapModel& model, const TexelData& data, const LightVector& weight, double loss,
-                     double most_f0, MapPoint* point);
+                     const AmplitudeBounds& bounds, MapPoint* point);
   // Likewise under weights of 1, and again under those that the loss gives that answer: what it cannot meet, as a cast
   // shadow, weighs less.
-  double CostOfStart(const MapModel& model, const TexelData& data, double loss, double most_f0, MapPoint* point);
+  double CostOfStart(const MapModel& model, const TexelData& data, double loss, const AmplitudeBounds& bounds,
+                     MapPoint* point);
   double Derivatives(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,
                      Curvature curvature, MapVector* gradient, MapMatrix* hessian);
 
@@ -47,8 +54,8 @@ class TexelObjective {
   void Shape(const MapModel& model, const TexelData& data, const MapPoint& point, bool gradient);
   void TakeAmplitudes(const MapModel& model, const MapPoint& point);
   // For the shape of the last call of Shape; the loss' weights go to `next_weight` unless null.
-  double CostAtBestAmplitudes(const MapModel& model, const LightVector& weight, double most_f0, double* next_weight,
-                              MapPoint* point);
+  double CostAtBestAmplitudes(const MapModel& model, const LightVector& weight, const AmplitudeBounds& bounds,
+                              double* next_weight, MapPoint* point);
 
   ShapeArrays shape_;
   LightTerms terms_;

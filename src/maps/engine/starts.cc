@@ -28,8 +28,8 @@ Vec3 Solve3(const double A[6], const Vec3& b) {  // xx xy xz yy yz zz
 }  // namespace
 
 MapPoint LambertStart(const MapModel& model, const TexelData& data, const LightVector& mean, const MapBounds& bounds,
-                      double loss, TexelObjective* objective, LightVector* dull) {
-  MapPoint point;
+                      const MapPoint& held, double loss, TexelObjective* objective, LightVector* dull) {
+  MapPoint point = held;
   const LightArrays& lights = data.lights;
   for (std::size_t l = 0; l < lights.padded; ++l) (*dull)[l] = mean[l] <= 1 ? lights.live[l] : 0;
   if (!bounds.normal_held) {
@@ -39,7 +39,7 @@ MapPoint LambertStart(const MapModel& model, const TexelData& data, const LightV
     const double A[6] = {sums[0][0], sums[1][0], sums[2][0], sums[1][1], sums[2][1], sums[2][2]};
     point.normal = AboveHorizon(Solve3(A, {sums[3][0], sums[3][1], sums[3][2]}), 0.1);
   }
-  objective->CostOfShape(model, data, *dull, loss, 0, &point);
+  objective->CostOfShape(model, data, *dull, loss, bounds.amplitudes, &point);
   return point;
 }
 
@@ -58,7 +58,7 @@ Vec3 HighlightNormal(const TexelData& data, const LightVector& mean, const MapPo
     const double e = excess(l);
     if (e < 0.5 * most) continue;
     const double weight = e * e / std::sqrt(lights.square[l]);
-    sum = sum + weight * Vec3{lights.x[l], lights.y[l], lights.z[l] + 1};
+    sum = sum + weight * Vec3{lights.x[l] + lights.out_x[l], lights.y[l] + lights.out_y[l], lights.z[l] + lights.out_z[l]};
   }
   return AboveHorizon(sum, std::max(0.1, bounds.least_normal_z));
 }

@@ -4,64 +4,27 @@
 #include <cmath>
 #include <limits>
 
-#include "lobefit/maps/engine/factor.h"
-
 namespace lobefit {
 namespace {
 
-// A width or reflectance whose logarithm is not known to this is not determined; likewise a normal, in radians.
-constexpr double kMostLogError = 0.5, kMostNormalError = 0.5;
 constexpr double kStartAlphas[] = {0.05, 0.1, 0.2, 0.4};
 
-double ErrorOf(const MapErrors& errors, int j) { return std::sqrt(errors.covariance[j][j]); }
-
-// Variance of v . (a t + b b).
-double Along(const MapErrors& errors, double t, double b) {
-  return std::sqrt(t * t * errors.covariance[0][0] + 2 * t * b * errors.covariance[0][1] +
-                   b * b * errors.covariance[1][1]);
-}
-
-// Widths and direction of L = (a 0; b c) by the eigenvalues of L L^T, with their errors.
-void Axes(const MapPoint& point, const MapErrors& errors, TexelFit* fit) {
-  const double a = std::exp(point.width[0]), b = point.width[1], c = std::exp(point.width[2]);
-  const double xx = a * a, xy = a * b, yy = b * b + c * c;
-  const double half = (xx - yy) / 2, root = std::hypot(half, xy), middle = (xx + yy) / 2;
-  const double large = middle + root, small = a * a * c * c / large;
-  const double angle = 0.5 * std::atan2(xy, half);
-  fit->alpha_x = std::sqrt(large), fit->alpha_y = std::sqrt(small);
-  fit->angle = angle <= -kPi / 2 ? kPi / 2 : angle;
-  // d (xx, xy, yy) by (ln a, b, ln c).
-  const double d[3][3] = {{2 * a * a, a * b, 0}, {0, a, 2 * b}, {0, 0, 2 * c * c}};
-  const double cx = std::cos(angle), sx = std::sin(angle);
-  double by[3][3];  // of ln alpha_x, ln alpha_y, angle
-  for (int j = 0; j < 3; ++j) {
-    by[0][j] = (cx * cx * d[j][0] + 2 * cx * sx * d[j][1] + sx * sx * d[j][2]) / (2 * large);
-    by[1][j] = (sx * sx * d[j][0] - 2 * cx * sx * d[j][1] + cx * cx * d[j][2]) / (2 * small);
-    by[2][j] = (-cx * sx * d[j][0] + (cx * cx - sx * sx) * d[j][1] + cx * sx * d[j][2]) / (large - small);
-  }
-  double* to[3] = {&fit->log_alpha_x_error, &fit->log_alpha_y_error, &fit->angle_error};
-  for (int q = 0; q < 3; ++q) {
-    double variance = 0;
-    for (int j = 0; j < 3; ++j) {
-      for (int k = 0; k < 3; ++k) variance += by[q][j] * by[q][k] * errors.covariance[2 + j][2 + k];
-    }
-    *to[q] = std::sqrt(variance);
-  }
+// Mean slopes, in the frame of the normal, of a lobe about `peak`.
+std::array<double, 2> SlopeTowards(const Vec3& normal, const Vec3& peak, double most) {
+  const MapFrame frame = FrameOf(normal);
+  const double z = std::max(Dot(frame.n, peak), 1e-6);
+  return {std::clamp(-Dot(frame.t, peak) / z, -most, most), std::clamp(-Dot(frame.b, peak) / z, -most, most)};
 }
 
 }  // namespace
 
-TexelFitter::TexelFitter(const MapRules& rules, const std::vector<Vec3>& lights, int channels)
+TexelFitter::TexelFitter(const MapRules& rules, const LightPaths& paths, int channels)
     : rules_(rules), channels_(channels) {
-  lights_.Resize(lights.size());
-  MoveLights(lights);
+  lights_.Resize(paths.wi.size());
+  Move(paths);
   data_.Resize(lights_.padded);
   objective_.Resize(lights_.padded);
   mean_.resize(lights_.padded), dull_.resize(lights_.padded);
-}
-
-void TexelFitter::MoveLights(const std::vector<Vec3>& lights) {
-  for (std::size_t l = 0; l < lights.size(); ++l) lights_.Set(l, lights[l], rules_.schlick);
 }
 
 bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit) {
@@ -86,6 +49,7 @@ bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit)
   fit->scale = scale;
   data_.scale = scale;
   std::size_t used = 0;
+  data_.lights.from_z = lights_.from_z;
   for (std::size_t l = 0; l < lights_.count; ++l) {
     if (!std::isfinite(all_means_[l]) || all_means_[l] < rules_.shadow * scale) continue;
     data_.lights.Copy(lights_, l, used);
@@ -101,22 +65,24 @@ bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit)
   }
   fit->used = static_cast<std::uint32_t>(used);
   const MapModel model = {rules_.lobe, channels_, rules_.schlick};
-  return used >= 4 && used * static_cast<std::size_t>(channels_) > static_cast<std::size_t>(model.Unknowns());
+  return used >= 4 && used * static_cast<std::size_t>(channels_) > static_cast<std::size_t>(FreeUnknowns(model, bounds_));
 }
 
-MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent& lambert, double log_alpha) {
-  const Vec3 normals[2] = {lambert.point.normal, HighlightNormal(data_, mean_, lambert.point, bounds_)};
+MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent& lambert) {
+  // The lobe about the Lambertian normal, and about what mirrors the brightest lights.
+  const Vec3 peaks[2] = {lambert.point.normal, HighlightNormal(data_, mean_, lambert.point, bounds_)};
   MapPoint starts[2];
   double costs[2];
-  const int count = bounds_.normal_held ? 1 : 2;
+  const bool peak_held = model.TurnsNormal() ? bounds_.normal_held : bounds_.slope_held;
+  const int count = peak_held ? 1 : 2;
   for (int k = 0; k < count; ++k) {
     costs[k] = std::numeric_limits<double>::infinity();
     for (const double alpha : kStartAlphas) {
       MapPoint point = lambert.point;
-      point.normal = normals[k];
-      const double width = bounds_.width_held ? log_alpha : std::log(alpha);
-      point.width = {width, 0, width};
-      const double cost = objective_.CostOfStart(model, data_, rules_.loss, bounds_.most_f0, &point);
+      if (!bounds_.width_held) point.width = {std::log(alpha), 0, std::log(alpha)};
+      if (model.TurnsNormal()) point.normal = peaks[k];
+      if (!model.TurnsNormal() && k == 1) point.slope = SlopeTowards(point.normal, peaks[k], bounds_.most_slope);
+      const double cost = objective_.CostOfStart(model, data_, rules_.loss, bounds_.amplitudes, &point);
       if (cost < costs[k]) costs[k] = cost, starts[k] = point;
       if (bounds_.width_held) break;
     }
@@ -125,7 +91,7 @@ MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent&
   MapDescent best = Descend(model, data_, starts[first], bounds_, rules_.loss, &objective_);
   if (count == 1) return best;
   // The other normal may lie in another valley: near one it leads to the same.
-  if (Dot(normals[0], normals[1]) > 0.9998) return best;
+  if (Dot(peaks[0], peaks[1]) > 0.9998) return best;
   const int other = 1 - first;
   const MapDescent second =
       Descend(model, data_, starts[other], bounds_, rules_.loss, &objective_, kFineTolerance, &best);
@@ -135,32 +101,36 @@ MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent&
   return best;
 }
 
-TexelFit TexelFitter::Fit(const float* values, std::size_t stride, double log_alpha, MapPoint* end,
+TexelFit TexelFitter::Fit(const float* values, std::size_t stride, const HeldNumbers& held, MapPoint* end,
                           MapModel* end_model) {
   TexelFit fit;
-  slope_ = curvature_ = 0;
+  last_model_.channels = 0;
+  bounds_ = {held.normal || !rules_.normal_free,
+             held.slope,
+             held.width,
+             {held.diffuse, held.f0, 1e6},
+             std::log(rules_.least_alpha),
+             std::log(rules_.most_alpha)};
   if (!Select(values, stride, &fit)) {
     fit.status = kMapTooFew | kMapNotDetermined;
     return fit;
   }
-  bounds_ = {!rules_.normal_free,
-             !std::isnan(log_alpha),
-             std::log(rules_.least_alpha),
-             std::log(rules_.most_alpha),
-             rules_.schlick ? 1 / data_.scale : 1e6,
-             0.02};
+  if (rules_.schlick) bounds_.amplitudes.most_f0 = 1 / data_.scale;
+  MapPoint known = held.point;
+  for (std::size_t c = 0; c < kMostChannels; ++c) known.diffuse[c] /= data_.scale, known.f0[c] /= data_.scale;
   const MapModel none = {MapLobe::kNone, channels_, rules_.schlick};
   // Coarse where it only serves as a start and to be compared with.
   const bool lobe_wanted = rules_.lobe != MapLobe::kNone;
-  MapDescent best = Descend(none, data_, LambertStart(none, data_, mean_, bounds_, rules_.loss, &objective_, &dull_),
-                            bounds_, rules_.loss, &objective_, lobe_wanted ? kCoarseTolerance : kFineTolerance);
+  MapDescent best =
+      Descend(none, data_, LambertStart(none, data_, mean_, bounds_, known, rules_.loss, &objective_, &dull_), bounds_,
+              rules_.loss, &objective_, lobe_wanted ? kCoarseTolerance : kFineTolerance);
   MapModel model = none;
   if (lobe_wanted) {
     const MapModel with = {rules_.lobe, channels_, rules_.schlick};
-    const MapDescent lobe = DescendWithLobe(with, best, log_alpha);
+    const MapDescent lobe = DescendWithLobe(with, best);
     // Bayesian information criterion, with the profiled level of noise.
     const double count = static_cast<double>(fit.used) * channels_;
-    const double more = with.Unknowns() - none.Unknowns() - (bounds_.width_held ? with.Shape() - 2 : 0);
+    const double more = FreeUnknowns(with, bounds_) - FreeUnknowns(none, bounds_);
     const bool evidence = count * std::log(best.cost / lobe.cost) > more * std::log(count);
     int iterations = best.iterations + lobe.iterations;
     if (rules_.choice == LobeChoice::kAlways || evidence) {
@@ -172,99 +142,11 @@ TexelFit TexelFitter::Fit(const float* values, std::size_t stride, double log_al
     best.iterations = iterations;
   }
   if (model.lobe == MapLobe::kNone && rules_.lobe != MapLobe::kNone) fit.status |= kMapNoLobe;
+  last_model_ = model, last_point_ = best.point, last_cost_ = best.cost;
   Report(model, best, &fit);
   if (end != nullptr) *end = best.point;
   if (end_model != nullptr) *end_model = model;
   return fit;
-}
-
-void TexelFitter::Report(const MapModel& model, const MapDescent& best, TexelFit* fit) {
-  const MapPoint& point = best.point;
-  const double scale = data_.scale;
-  fit->cost = best.cost, fit->iterations = best.iterations;
-  if (!best.converged) fit->status |= kMapNotConverged;
-  const MapErrors errors = ErrorsOf(model, data_, point, bounds_, rules_.loss, &objective_);
-  double squares = 0, weights = 0;
-  for (std::size_t l = 0; l < data_.lights.count; ++l) {
-    for (int c = 0; c < channels_; ++c) {
-      const double r = objective_.residual(c)[l];
-      squares += objective_.weight()[l] * r * r, weights += objective_.weight()[l];
-    }
-  }
-  fit->rms = std::sqrt(squares / weights);
-  if (!errors.regular) {
-    fit->status |= kMapNotDetermined;
-    return;
-  }
-  if (point.normal.z <= bounds_.least_normal_z * 1.0001) fit->status |= kMapAtBound;
-  const MapFrame frame = FrameOf(point.normal);
-  fit->normal = point.normal;
-  if (rules_.normal_free) {
-    fit->normal_angle_error = std::sqrt(errors.covariance[0][0] + errors.covariance[1][1]);
-    fit->normal_error = {Along(errors, frame.t.x, frame.b.x), Along(errors, frame.t.y, frame.b.y),
-                         Along(errors, frame.t.z, frame.b.z)};
-    if (!(fit->normal_angle_error < kMostNormalError)) {
-      fit->status |= kMapNotDetermined;
-      fit->normal = fit->normal_error = {kNan, kNan, kNan};
-      fit->normal_angle_error = kNan;
-    }
-  }
-  for (int c = 0; c < channels_; ++c) {
-    fit->diffuse[c] = kPi * scale * point.diffuse[c];
-    fit->diffuse_error[c] = kPi * scale * ErrorOf(errors, model.DiffuseAt(c));
-    if (model.lobe == MapLobe::kNone) continue;
-    fit->f0[c] = scale * point.f0[c];
-    fit->f0_error[c] = scale * ErrorOf(errors, model.F0At(c));
-    if (!(fit->f0_error[c] < kMostLogError * fit->f0[c]) && !std::isnan(fit->f0_error[c])) {
-      fit->f0[c] = fit->f0_error[c] = kNan;
-      fit->status |= kMapNotDetermined;
-    }
-  }
-  if (model.lobe == MapLobe::kNone) return;
-  const bool at_bound =
-      !bounds_.width_held && (point.width[0] <= bounds_.least_width || point.width[0] >= bounds_.most_width ||
-                              (model.lobe == MapLobe::kGgxAnisotropic &&
-                               (point.width[2] <= bounds_.least_width || point.width[2] >= bounds_.most_width)));
-  if (at_bound) fit->status |= kMapAtBound;
-  if (model.lobe == MapLobe::kGgxAnisotropic) {
-    Axes(point, errors, fit);
-  } else {
-    fit->alpha_x = fit->alpha_y = std::exp(point.width[0]);
-    fit->log_alpha_x_error = fit->log_alpha_y_error = ErrorOf(errors, 2);
-  }
-  if (!bounds_.width_held) {
-    const bool unknown_x = !(fit->log_alpha_x_error < kMostLogError),
-               unknown_y = !(fit->log_alpha_y_error < kMostLogError);
-    if (unknown_x || unknown_y) {
-      // What f0 is follows from the width: the height of a lobe of unknown width says neither.
-      fit->status |= kMapNotDetermined;
-      fit->alpha_x = fit->alpha_y = fit->log_alpha_x_error = fit->log_alpha_y_error = kNan;
-      fit->angle = fit->angle_error = kNan;
-      for (int c = 0; c < channels_; ++c) fit->f0[c] = fit->f0_error[c] = kNan;
-    }
-    return;
-  }
-  // The valley along a held width: -ln likelihood with the level of noise profiled is N / 2 ln cost.
-  MapVector gradient = {};
-  MapMatrix hessian = {};
-  const int unknowns = model.Unknowns();
-  objective_.Derivatives(model, data_, point, rules_.loss, Curvature::kClipped, &gradient, &hessian);
-  const std::array<bool, kMostUnknowns> held = HeldUnknowns(model, point, bounds_, gradient);
-  MapVector coupling = {};
-  for (int j = 0; j < unknowns; ++j) coupling[j] = held[j] ? 0 : hessian[j][2];
-  MapVector answer = coupling;
-  const double own = hessian[2][2];
-  if (!Factorise(unknowns, held, &hessian)) return;
-  SolveFactorised(unknowns, hessian, &answer);
-  double schur = own;
-  for (int j = 0; j < unknowns; ++j) schur -= coupling[j] * answer[j];
-  const double units = 0.5 * static_cast<double>(fit->used) * channels_ / best.cost;
-  slope_ = units * gradient[2], curvature_ = units * schur;
-}
-
-bool TexelFitter::ProfileOfLastFit(double* slope, double* curvature) const {
-  *slope = slope_, *curvature = curvature_;
-  return curvature_ > 0;
 }
 
 }  // namespace lobefit

@@ -32,8 +32,22 @@ enum MapStatus : std::uint32_t {
   kMapNoLobe = 32,  // the evidence is against a lobe
 };
 
-// alpha_x >= alpha_y; angle: of alpha_x's axis in the frame of the normal, counter-clockwise, in (-pi/2, pi/2]. A
-// number that the data do not determine is NaN, its error then too. Diffuse albedo and f0 in the stack's unit.
+// What is known of a texel from elsewhere and is not fitted: of `point`, where diffuse is albedo / pi and f0 that of the
+// stack's unit.
+struct HeldNumbers {
+  bool normal = false, slope = false, width = false, diffuse = false, f0 = false;
+  MapPoint point;
+};
+
+// Of -ln likelihood by unknowns of the whole model.
+struct ProfileTerms {
+  MapVector slope = {};
+  MapMatrix curvature = {};
+};
+
+// alpha_x >= alpha_y; angle: of alpha_x's axis in the frame of the normal, counter-clockwise, in (-pi/2, pi/2]; tilt: of
+// the ellipsoid, theta_x and theta_y of core/ellipsoid in the same frame. A number that the data do not determine is NaN,
+// its error then too. Diffuse albedo and f0 in the stack's unit.
 struct TexelFit {
   Vec3 normal = {kNan, kNan, kNan}, normal_error = {kNan, kNan, kNan};
   double normal_angle_error = kNan;  // radians: root of the sum of both tangents' variances
@@ -41,32 +55,37 @@ struct TexelFit {
   double f0[kMostChannels] = {kNan, kNan, kNan}, f0_error[kMostChannels] = {kNan, kNan, kNan};
   double alpha_x = kNan, alpha_y = kNan, angle = kNan;
   double log_alpha_x_error = kNan, log_alpha_y_error = kNan, angle_error = kNan;
+  double tilt[2] = {kNan, kNan}, tilt_error[2] = {kNan, kNan};
   double rms = kNan;    // of the residuals, weighed by the loss, in units of scale
   double scale = kNan;  // 90th percentile of the values' means over channels
   double cost = kNan;
   std::uint32_t used = 0;  // lights
   int iterations = 0;
   std::uint32_t status = 0;
+  std::uint32_t cluster = 0;  // from 1; 0: none
 };
 
 // Lights and room for one thread. The same values give the same bits on any thread, in any order.
 class TexelFitter {
  public:
-  TexelFitter(const MapRules& rules, const std::vector<Vec3>& lights, int channels);
-  // Moves the lights, as many as before: of the texel that is fitted next.
-  void MoveLights(const std::vector<Vec3>& lights);
-  // values[channel stride + light]: f_r cos_theta_i; NaN: none, infinite: saturated. log_alpha: shared by all texels
-  // and held, or NaN. `point`, `model`: where the search ended, unless null.
-  TexelFit Fit(const float* values, std::size_t stride, double log_alpha, MapPoint* point = nullptr,
+  TexelFitter(const MapRules& rules, const LightPaths& paths, int channels);
+  // Moves lights and cameras, as many as before: of the texel that is fitted next.
+  void Move(const LightPaths& paths) { lights_.Set(paths, rules_.schlick); }
+  // values[channel stride + light]: f_r cos_theta_i; NaN: none, infinite: saturated. `point`, `model`: where the search
+  // ended, unless null.
+  TexelFit Fit(const float* values, std::size_t stride, const HeldNumbers& held = {}, MapPoint* point = nullptr,
                MapModel* model = nullptr);
-  // Slope and curvature of the cost by ln alpha along the texel's valley (all else follows), at the point of the last
-  // Fit with log_alpha given; false where that texel says nothing.
-  bool ProfileOfLastFit(double* slope, double* curvature) const;
+  // At the point of the last Fit: by the unknowns that were held and are `shared` with other texels, along the texel's
+  // valley (all else follows), the texel's level of noise profiled; amplitudes in the stack's unit, as HeldNumbers has
+  // them. False where that texel says nothing.
+  bool ProfileOfLastFit(const HeldNumbers& shared, ProfileTerms* terms);
 
  private:
   bool Select(const float* values, std::size_t stride, TexelFit* fit);
-  MapDescent DescendWithLobe(const MapModel& model, const MapDescent& lambert, double log_alpha);
+  MapDescent DescendWithLobe(const MapModel& model, const MapDescent& lambert);
   void Report(const MapModel& model, const MapDescent& best, TexelFit* fit);
+  void ReportNormal(const MapPoint& point, const MapErrors& errors, TexelFit* fit) const;
+  void ReportWidths(const MapModel& model, const MapPoint& point, const MapErrors& errors, TexelFit* fit) const;
 
   MapRules rules_;
   int channels_;
@@ -76,7 +95,10 @@ class TexelFitter {
   MapBounds bounds_;
   LightVector mean_, dull_;
   std::vector<double> sorted_, all_means_;
-  double slope_ = 0, curvature_ = 0;
+  // Of the last Fit; no channels: nothing was fitted.
+  MapModel last_model_;
+  MapPoint last_point_;
+  double last_cost_ = 0;
 };
 
 }  // namespace lobefit

@@ -47,10 +47,13 @@ Maps ReadMapsExr(const std::filesystem::path& path, const std::function<bool(con
     const Imf::ChannelList& list = header.channels();
     Maps maps;
     maps.channels = list.findChannel("diffuse.R") != nullptr ? 3 : 1;
-    maps.lobe = list.findChannel("alpha_x") != nullptr ? MapLobe::kGgxAnisotropic
+    maps.lobe = list.findChannel("tilt_x_deg") != nullptr ? MapLobe::kEllipsoid
+                : list.findChannel("alpha_x") != nullptr ? MapLobe::kGgxAnisotropic
                 : list.findChannel("alpha") != nullptr ? MapLobe::kGgx
                                                        : MapLobe::kNone;
-    maps.planes = PlanesFor(maps.lobe, maps.channels);
+    const int quality = PartIndex(file, PartName(MapPart::kQuality));
+    const bool clusters = quality >= 0 && file.header(quality).channels().findChannel("cluster") != nullptr;
+    maps.planes = PlanesFor({maps.lobe, maps.channels, clusters});
     const Imath::Box2i window = header.dataWindow();
     const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
     if (window.min.x != 0 || window.min.y != 0 || width > 65536 || height > 65536) throw fail("an unusual window");

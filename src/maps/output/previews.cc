@@ -72,7 +72,7 @@ std::vector<std::filesystem::path> WritePreviews(const std::filesystem::path& ma
     write(kind, Picture(colors, 8, [&](double v, std::size_t) { return std::isnan(v) ? 0 : Srgb(v / white); }));
   }
   if (normals.lobe != MapLobe::kNone) {
-    const char* name = normals.lobe == MapLobe::kGgx ? "alpha" : "alpha_x";
+    const char* name = WidestAlpha(normals.lobe);
     write("alpha", Picture(Chosen(maps, MapPart::kParameters, name), 8,
                            [](double v, std::size_t) { return std::isnan(v) ? 0 : v; }));
   }

@@ -39,7 +39,7 @@ void DoubtMeter::Predict(const RelitTexel& texel, double x, double y, double nea
   std::vector<double> irradiance;
   for (std::size_t l = 0; l < directions_.size(); ++l) {
     const Vec3 beam = directions_[l] - nearness * Vec3{x, y, 0};
-    lights_.Set(l, Normalized(beam), schlick_);
+    lights_.Set(l, Normalized(beam), {0, 0, 1}, schlick_);
     irradiance.push_back(1 / Dot(beam, beam));
   }
   EvaluateShape(texel.lobe, texel.point, lights_, gradient, &shape_);

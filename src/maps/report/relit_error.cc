@@ -15,13 +15,13 @@ namespace {
 class RelitStack {
  public:
   RelitStack(const Maps& maps, const Stack& stack, const Fallback& fallback)
-      : stack_(stack), relighting_(maps, DirectionsOf(stack), stack.calibrated, fallback) {
+      : stack_(stack), relighting_(maps, {DirectionsOf(stack), {}}, stack.calibrated, fallback) {
     for (std::size_t l = 0; l < stack.lights.size(); ++l) all_.push_back(l);
   }
   void Texel(std::size_t texel, double* values, std::size_t stride) {
-    if (stack_.near) {
-      DirectionsAt(stack_, all_, texel, &directions_);
-      relighting_.MoveLights(directions_);
+    if (stack_.MovesPaths()) {
+      PathsAt(stack_, all_, texel, &paths_);
+      relighting_.Move(paths_);
     }
     relighting_.Texel(texel, values, stride);
   }
@@ -36,7 +36,7 @@ class RelitStack {
   const Stack& stack_;
   Relighting relighting_;
   std::vector<std::size_t> all_;
-  std::vector<Vec3> directions_;
+  LightPaths paths_;
 };
 
 }  // namespace
@@ -92,8 +92,8 @@ Judgement JudgeLights(const Maps& maps, const Stack& stack, const std::vector<st
   }
   Judgement judgement;
   judgement.doubts = doubts.Result();
-  // Gathered with distant lights.
-  if (stack.near) judgement.doubts = {};
+  // Gathered with distant lights and camera.
+  if (stack.MovesPaths()) judgement.doubts = {};
   for (std::size_t l = 0; l < lights; ++l) {
     const bool is_fitted = std::find(left_out.begin(), left_out.end(), l) == left_out.end();
     judgement.lights.push_back({l, is_fitted, 10 * std::log10(peak * peak * counts[l] / squares[l])});
@@ -106,6 +106,7 @@ RelitPair Relit(const Maps& maps, const Stack& stack, std::size_t light, const F
   one.images = {stack.images[light]}, one.lights = {stack.lights[light]};
   if (!stack.parts.empty()) one.parts = {stack.parts[light]};
   if (!stack.white.empty()) one.white = {stack.white[light]};
+  if (stack.cameras.size() > 1) one.cameras = {stack.cameras[light]};
   RelitStack relighting(maps, one, fallback);
   StackReader reader(one);
   RelitPair pair;
@@ -114,8 +115,11 @@ RelitPair Relit(const Maps& maps, const Stack& stack, std::size_t light, const F
   for (std::size_t t = 0; t < one.width * one.height; ++t) {
     double values[kMostChannels];
     relighting.Texel(t, values, 1);
+    // Over a white board the light's fall has dropped out.
+    const double irradiance = one.white.empty() ? IrradianceAt(one, 0, t) : 1;
     for (std::size_t c = 0; c < one.channels; ++c) {
-      pair.fit[t * one.channels + c] = static_cast<float>(one.Holds(t) ? values[c] : kNan);
+      pair.fit[t * one.channels + c] = static_cast<float>(one.Holds(t) ? irradiance * values[c] : kNan);
+      pair.photograph[t * one.channels + c] *= static_cast<float>(irradiance);
       if (!one.Holds(t)) pair.photograph[t * one.channels + c] = std::numeric_limits<float>::quiet_NaN();
     }
   }

@@ -26,7 +26,7 @@ struct Judgement {
 Judgement JudgeLights(const Maps& maps, const Stack& stack, const std::vector<std::size_t>& left_out,
                       const Fallback& fallback);
 
-// One photograph and the fit under its light, [texel channels + channel]; NaN outside.
+// One photograph and the fit under its light, both as the light falls there, [texel channels + channel]; NaN outside.
 struct RelitPair {
   std::vector<float> photograph, fit;
 };

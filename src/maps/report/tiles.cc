@@ -52,7 +52,7 @@ std::vector<Tile> MapTiles(const Maps& maps, const Stack& stack) {
     errors.push_back(Scalar(maps, MapPart::kErrors, gray ? "f0.Y" : "f0.G", "Error of F0",
                             gray ? "standard" : "green, standard", true));
     const bool one = maps.lobe == MapLobe::kGgx;
-    tiles.push_back(Scalar(maps, MapPart::kParameters, one ? "alpha" : "alpha_x", one ? "Alpha" : "Alpha, wide",
+    tiles.push_back(Scalar(maps, MapPart::kParameters, WidestAlpha(maps.lobe), one ? "Alpha" : "Alpha, wide",
                            "width; white: not determined", false));
     errors.push_back(
         Scalar(maps, MapPart::kErrors, one ? "ln_alpha" : "ln_alpha_x", "Error of ln alpha", "standard", true));

@@ -96,7 +96,7 @@ StackFiles ReadDome(const std::filesystem::path& path) {
       file.Fail(
           fmt::format("lights of configuration '{}' need imageWidth, the width of the picture in their unit", word));
     }
-    SetNear({.width_mm = value}, file.name, &stack);
+    SetNear({}, value, file.name, &stack);
   }
   const auto adjust = file.json.find("ledAdjust");
   if (adjust != file.json.end() && adjust->is_array() && !adjust->empty()) {

@@ -26,6 +26,11 @@ StackFiles ReadLightFile(const std::filesystem::path& file);
 // A dome of RelightLab (.dome, JSON): directions, or positions in the unit of imageWidth; the images beside it by name.
 StackFiles ReadDome(const std::filesystem::path& file);
 
+// The JSON of MaterialGAN's captures: im_size (cm, side of the square picture), camera_pos, light_pos, light_pow, and the
+// images NN.png of `idx` in target_dir, with gamma 2.2 [as the reader of tflsguoyu's svbrdf-diff-renderer has it].
+StackFiles ReadMaterialGan(const std::filesystem::path& file);
+bool IsMaterialGan(const std::filesystem::path& file);
+
 // Images named by angles, "tl045 pl090 tv000 pv000.png" with anything between [as UBO2003 and UTIA have it]: polar
 // angle and azimuth of light and viewer, degrees. Views other than from above are left out, and counted.
 StackFiles ReadAngleNames(const std::filesystem::path& folder);
@@ -38,9 +43,11 @@ StackFiles ReadManifest(const std::filesystem::path& file);
 // `columns` rows of another length are found, transposed. Throws InputError with the line.
 std::vector<std::vector<double>> ReadTable(const std::filesystem::path& file, std::size_t columns);
 
-// Takes the places of the lights for positions. Throws InputError, with `name` in front, where one is not in front of
-// the picture. reference_mm of `near` is filled.
-void SetNear(NearLights near, const std::string& name, Stack* stack);
+// Takes the places of the lights for positions over a picture of this width. Throws InputError, with `name` in front,
+// where one is not in front of the picture. reference_mm of `near` is filled.
+void SetNear(NearLights near, double width_mm, const std::string& name, Stack* stack);
+// Likewise of cameras.
+void SetCameras(const std::vector<Vec3>& cameras, double width_mm, const std::string& name, Stack* stack);
 
 // By its extension, an image that OpenImage may read.
 bool IsImageName(const std::filesystem::path& path);

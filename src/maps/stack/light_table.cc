@@ -46,7 +46,7 @@ std::vector<std::vector<double>> ReadTable(const std::filesystem::path& file, st
   return rows;
 }
 
-void SetNear(NearLights near, const std::string& name, Stack* stack) {
+void SetNear(NearLights near, double width_mm, const std::string& name, Stack* stack) {
   for (std::size_t l = 0; l < stack->lights.size(); ++l) {
     const Vec3& place = stack->lights[l].place;
     if (!(place.z > 0)) {
@@ -55,7 +55,17 @@ void SetNear(NearLights near, const std::string& name, Stack* stack) {
     }
     near.reference_mm += Norm(place) / static_cast<double>(stack->lights.size());
   }
-  stack->near = near;
+  stack->near = near, stack->width_mm = width_mm;
+}
+
+void SetCameras(const std::vector<Vec3>& cameras, double width_mm, const std::string& name, Stack* stack) {
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    if (!(cameras[k].z > 0)) {
+      throw InputError(fmt::format("{}: camera {} at z = {} mm is not in front of the picture, whose plane is z = 0",
+                                   name, k + 1, cameras[k].z));
+    }
+  }
+  stack->cameras = cameras, stack->width_mm = width_mm;
 }
 
 Vec3 LightDirection(double x, double y, double z, const std::string& place) {

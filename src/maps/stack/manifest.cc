@@ -91,19 +91,60 @@ void ReadParts(const std::vector<std::filesystem::path>& named, const std::files
   stack->images.assign(stack->parts.size(), file);
 }
 
-// The positions that the file of lights gave, and the scale of the picture.
-void ReadNear(const Manifest& manifest, const toml::table& table, const toml::table& lights, Stack* stack) {
+// The width of the picture, mm, which `what` needs.
+double WidthOf(const Manifest& manifest, const toml::table& table, const char* what) {
   const toml::table* plane = table["plane"].as_table();
   if (plane == nullptr || !plane->contains("width_mm")) {
-    throw InputError(manifest.name +
-                     ": lights of kind \"position\" need [plane] with width_mm, the width of the picture");
+    throw InputError(fmt::format("{}: {} need [plane] with width_mm, the width of the picture", manifest.name, what));
   }
   manifest.CheckKeys(*plane, {"width_mm"});
+  return manifest.Number(*plane, "width_mm", 0, 1e-3, 1e6);
+}
+
+// The positions that the file of lights gave.
+void ReadNear(const Manifest& manifest, const toml::table& table, const toml::table& lights, Stack* stack) {
   NearLights near;
-  near.width_mm = manifest.Number(*plane, "width_mm", 0, 1e-3, 1e6);
   near.inverse_square = manifest.Word(lights, "falloff", {"inverse-square", "none"}) == 0;
   near.exponent = manifest.Number(lights, "exponent", 0, 0, 100);
-  SetNear(near, manifest.name, stack);
+  SetNear(near, WidthOf(manifest, table, "lights of kind \"position\""), manifest.name, stack);
+}
+
+// One place, or a file with one a photograph.
+void ReadCamera(const Manifest& manifest, const toml::table& table, Stack* stack) {
+  const toml::node* node = table.get("camera");
+  if (node == nullptr) return;
+  const toml::table* camera = node->as_table();
+  if (camera == nullptr) manifest.Fail(node->source(), "'camera' must be a table: [camera]");
+  manifest.CheckKeys(*camera, {"kind", "position", "file"}, "in [camera]");
+  const bool placed = camera->contains("position") || camera->contains("file");
+  const bool orthographic = manifest.Word(*camera, "kind", {"orthographic", "position"}) == 0;
+  if (orthographic && placed && camera->contains("kind")) {
+    manifest.Fail(node->source(), "an orthographic camera has no position; leave position and file out");
+  }
+  if (!placed) {
+    if (!orthographic) manifest.Fail(node->source(), "kind = \"position\" needs position = [x, y, z] or file = \"...\"");
+    return;
+  }
+  std::vector<Vec3> places;
+  if (const toml::node* position = camera->get("position")) {
+    if (camera->contains("file")) manifest.Fail(node->source(), "position and file say the same; leave one of them out");
+    const toml::array* list = position->as_array();
+    double at[3] = {kNan, kNan, kNan};
+    for (std::size_t k = 0; list != nullptr && list->size() == 3 && k < 3; ++k) {
+      if ((*list)[k].is_number()) at[k] = *(*list)[k].value<double>();
+    }
+    const Vec3 place = {at[0], at[1], at[2]};
+    if (!std::isfinite(Norm(place))) manifest.Fail(position->source(), "position must be three numbers, mm");
+    places.push_back(place);
+  } else {
+    const std::filesystem::path file = manifest.folder / manifest.Text(*camera, "file");
+    for (const std::vector<double>& row : ReadTable(file, 3)) places.push_back({row[0], row[1], row[2]});
+    if (places.size() != stack->images.size()) {
+      throw InputError(fmt::format("{}: {} places of cameras for {} images; one an image is expected",
+                                   PrintableName(file), places.size(), stack->images.size()));
+    }
+  }
+  SetCameras(places, WidthOf(manifest, table, "cameras at a position"), manifest.name, stack);
 }
 
 void ReadLights(const Manifest& manifest, const toml::table& table, Stack* stack) {
@@ -156,12 +197,13 @@ StackFiles ReadManifest(const std::filesystem::path& file) {
   const FileBytes bytes(file);
   const toml::table table = manifest.Parse(bytes.bytes());
   manifest.CheckKeys(table, {"images", "mask", "encoding", "saturation", "black", "calibrated", "lights", "plane",
-                             "dark", "white", "white_albedo"});
+                             "dark", "white", "white_albedo", "camera"});
   StackFiles files;
   Stack& stack = files.stack;
   stack.layout = "stack.toml";
   ReadImages(manifest, table, &stack);
   ReadLights(manifest, table, &stack);
+  ReadCamera(manifest, table, &stack);
   const std::string encoding = manifest.Text(table, "encoding"), mask = manifest.Text(table, "mask");
   if (!encoding.empty()) ReadEncoding(encoding, manifest.name, &stack.response);
   stack.response.black = manifest.Number(table, "black", 0, 0, 0.9);

@@ -17,13 +17,17 @@ using Path = std::filesystem::path;
 
 constexpr std::size_t kFewestLights = 4, kMostLights = 4096;
 
-bool IsLightFile(const Path& path) { return path.extension() == ".lp" || path.extension() == ".dome"; }
+bool IsLightFile(const Path& path) {
+  return path.extension() == ".lp" || path.extension() == ".dome" ||
+         (path.extension() == ".json" && IsMaterialGan(path));
+}
 
 StackFiles ReadLayout(const Path& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw InputError(PrintableName(path) + ": is not there");
   if (!std::filesystem::is_directory(path, error)) {
     if (path.extension() == ".dome") return ReadDome(path);
+    if (path.extension() == ".json") return ReadMaterialGan(path);
     return path.extension() == ".toml" ? ReadManifest(path) : ReadLightFile(path);
   }
   if (std::filesystem::exists(path / "stack.toml", error)) return ReadManifest(path / "stack.toml");
@@ -34,14 +38,14 @@ StackFiles ReadLayout(const Path& path) {
   }
   if (light_files.size() == 1) return ReadLayout(light_files[0]);
   if (light_files.size() > 1) {
-    throw InputError(fmt::format("{}: {} light files (.lp, .dome) are in this folder; name the one that is meant",
+    throw InputError(fmt::format("{}: {} light files (.lp, .dome, .json) are in this folder; name the one that is meant",
                                  PrintableName(path), light_files.size()));
   }
   if (HasAngleNames(path)) return ReadAngleNames(path);
   throw InputError(
       PrintableName(path) +
-      ": no image stack: a stack.toml, DiLiGenT's filenames.txt, a light file (.lp, .dome) or images named "
-      "by angles (tl045 pl090 tv000 pv000.png) are looked for in the folder");
+      ": no image stack: a stack.toml, DiLiGenT's filenames.txt, a light file (.lp, .dome, MaterialGAN's .json) or "
+      "images named by angles (tl045 pl090 tv000 pv000.png) are looked for in the folder");
 }
 
 void ReadMask(const Path& file, Stack* stack) {
@@ -169,10 +173,16 @@ std::string DigestOf(const Stack& stack) {
   }
   if (stack.near) {
     const NearLights& near = *stack.near;
-    all += fmt::format("near {} {} {} {};", near.width_mm, near.inverse_square, near.reference_mm, near.exponent);
+    all += fmt::format("near {} {} {} {};", stack.width_mm, near.inverse_square, near.reference_mm, near.exponent);
     for (const StackLight& light : stack.lights) {
       all += fmt::format("{} {} {};", light.place.x, light.place.y, light.place.z);
     }
+  }
+  for (const Vec3& camera : stack.cameras) {
+    all += fmt::format("camera {} {} {} {};", stack.width_mm, camera.x, camera.y, camera.z);
+  }
+  if (!stack.normal_map.empty()) {
+    all += fmt::format("normals {} {};", stack.normal_map_down, Sha256(FileBytes(stack.normal_map).bytes()));
   }
   all.append(stack.mask.begin(), stack.mask.end());
   for (const std::string& part : stack.parts) all += fmt::format("part {} {};", part.size(), part);

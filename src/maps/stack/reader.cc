@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include "lobefit/maps/stack/geometry.h"
+#include "lobefit/maps/stack/normal_map.h"
 
 namespace lobefit {
 namespace {
@@ -32,7 +33,7 @@ std::unique_ptr<ImageRows> StackImages::Open(std::size_t image) {
 }
 
 StackReader::StackReader(const Stack& stack) : stack_(stack) {
-  AllowFiles(stack.images.size() + stack.white.size() + 1);
+  AllowFiles(stack.images.size() + stack.white.size() + 2);
   bool integer = false;
   const auto known = [&](std::unique_ptr<ImageRows> image) {
     integer = integer || image->bits() <= 16;
@@ -42,6 +43,7 @@ StackReader::StackReader(const Stack& stack) : stack_(stack) {
   for (std::size_t i = 0; i < stack.images.size(); ++i) images_.push_back(known(images.Open(i)));
   for (const std::filesystem::path& path : stack.white) white_.push_back(known(OpenImage(path)));
   if (!stack.dark.empty()) dark_ = known(OpenImage(stack.dark));
+  if (!stack.normal_map.empty()) normals_ = OpenNormalMap(stack);
   row_.resize(stack.width * stack.channels);
   dark_row_.assign(row_.size(), 0), white_row_.resize(row_.size());
   if (!integer) return;
@@ -61,15 +63,17 @@ void StackReader::NextLinear(ImageRows* image, std::vector<float>* row) const {
 }
 
 StackBand StackReader::Read(std::size_t first_row, std::size_t rows) {
-  StackBand band = {first_row, rows, {}};
+  StackBand band = {first_row, rows, {}, {}};
   const std::size_t lights = images_.size(), channels = stack_.channels, width = stack_.width;
   band.values.resize(rows * width * channels * lights);
   for (; next_row_ < first_row; ++next_row_) {
     for (const auto& image : images_) image->Next(row_.data());
     for (const auto& image : white_) image->Next(row_.data());
     if (dark_ != nullptr) dark_->Next(row_.data());
+    if (normals_ != nullptr) normals_->Next(row_.data());
   }
   for (std::size_t y = 0; y < rows; ++y, ++next_row_) {
+    if (normals_ != nullptr) ReadNormals(normals_.get(), stack_.normal_map_down, &band.normals);
     if (dark_ != nullptr) NextLinear(dark_.get(), &dark_row_);
     for (std::size_t light = 0; light < lights; ++light) {
       NextLinear(images_[light].get(), &row_);

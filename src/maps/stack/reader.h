@@ -18,6 +18,7 @@ namespace lobefit {
 struct StackBand {
   std::size_t first_row = 0, rows = 0;
   std::vector<float> values;
+  std::vector<Vec3> normals;  // a texel; of a stack with a map of normals (normal_map.h)
 };
 
 // The images of a stack one by one, or side by side; one open file an image, or one for all parts.
@@ -49,7 +50,7 @@ class StackReader {
   void NextLinear(ImageRows* image, std::vector<float>* row) const;
 
   std::vector<std::unique_ptr<ImageRows>> images_, white_;
-  std::unique_ptr<ImageRows> dark_;
+  std::unique_ptr<ImageRows> dark_, normals_;
   std::vector<float> row_, dark_row_, white_row_;
   std::vector<float> table_;  // linear values of 16-bit codes, empty for floating point
   std::size_t next_row_ = 0;

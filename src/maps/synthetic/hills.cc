@@ -18,7 +18,7 @@ Hills MakeHills(std::size_t size, MapLobe lobe, double steepness) {
   Hills hills;
   Maps& maps = hills.maps;
   maps.lobe = lobe, maps.channels = kChannels;
-  maps.planes = PlanesFor(lobe, kChannels);
+  maps.planes = PlanesFor({lobe, kChannels});
   maps.rows = {0, size, size, {}};
   maps.rows.values.assign(maps.planes.size(), std::vector<float>(size * size));
   hills.height.resize(size * size);
@@ -53,7 +53,7 @@ Hills MakeHills(std::size_t size, MapLobe lobe, double steepness) {
         for (double& f0 : fit.f0) f0 = kNan;
         fit.status = kMapNoLobe;
       }
-      Fill(fit, lobe, kChannels, numbers.data());
+      Fill(fit, {lobe, kChannels}, numbers.data());
       for (std::size_t k = 0; k < numbers.size(); ++k) maps.rows.values[k][t] = numbers[k];
     }
   }

@@ -23,7 +23,9 @@ Stack GeometryOf(const Maps& maps, const StackSynthesis& synthesis) {
   Stack stack;
   stack.width = maps.rows.width, stack.height = maps.rows.rows;
   for (const Vec3& w : synthesis.lights) stack.lights.push_back({w, {1, 1, 1}, synthesis.distance * kWidthMm * w});
-  if (synthesis.distance > 0) stack.near = NearLights{kWidthMm, true, synthesis.distance * kWidthMm, 0};
+  if (synthesis.distance > 0) stack.near = NearLights{true, synthesis.distance * kWidthMm, 0};
+  if (synthesis.camera_distance > 0) stack.cameras = {{0, 0, synthesis.camera_distance * kWidthMm}};
+  stack.width_mm = kWidthMm;
   return stack;
 }
 
@@ -31,14 +33,16 @@ Stack GeometryOf(const Maps& maps, const StackSynthesis& synthesis) {
 // becomes 0.
 std::vector<float> Photograph(const Maps& maps, const StackSynthesis& synthesis, std::size_t light) {
   const std::size_t channels = static_cast<std::size_t>(maps.channels), texels = maps.rows.rows * maps.rows.width;
-  Relighting relighting(maps, {synthesis.lights[light]}, synthesis.calibrated, synthesis.fallback);
+  Relighting relighting(maps, {{synthesis.lights[light]}, {}}, synthesis.calibrated, synthesis.fallback);
   const Stack geometry = GeometryOf(maps, synthesis);
   RandomNumbers random(StreamSeed(synthesis.seed, light));
+  LightPaths paths;
   std::vector<float> image(texels * channels);
   for (std::size_t t = 0; t < texels; ++t) {
     double values[kMostChannels];
-    const Vec3 direction = DirectionAt(geometry, light, t);
-    if (geometry.near) relighting.MoveLights({direction});
+    PathsAt(geometry, {light}, t, &paths);
+    const Vec3 direction = paths.wi[0];
+    if (geometry.MovesPaths()) relighting.Move(paths);
     relighting.Texel(t, values, 1);
     const double irradiance = IrradianceAt(geometry, light, t);
     const bool dark = synthesis.shadow && synthesis.shadow(t, direction);
@@ -119,15 +123,20 @@ void WriteStack(const Maps& maps, const StackSynthesis& synthesis, const std::fi
         return rows;
       },
       folder / "truth.maps.exr");
+  std::string manifest = fmt::format(
+      "# Synthetic: the truth is truth.maps.exr; noise: {}\nencoding = \"linear\"\ncalibrated = {}\n\n[lights]\nfile = "
+      "\"lights.lp\"\nintensity = \"intensity.txt\"\n",
+      synthesis.noise == Noise{} ? "none" : ToText(synthesis.noise), synthesis.calibrated);
+  if (synthesis.distance > 0) manifest += "kind = \"position\"\n";
+  if (synthesis.camera_distance > 0) {
+    manifest +=
+        fmt::format("\n[camera]\nposition = [0, 0, {}]\n", FormatDouble(synthesis.camera_distance * kWidthMm));
+  }
+  if (GeometryOf(maps, synthesis).MovesPaths()) {
+    manifest += fmt::format("\n[plane]\nwidth_mm = {}\n", FormatDouble(kWidthMm));
+  }
   // Last: a folder with it is whole.
-  WriteFileAtomically(
-      folder / "stack.toml",
-      fmt::format("# Synthetic: the truth is truth.maps.exr; noise: {}\nencoding = \"linear\"\ncalibrated = {}\n\n"
-                  "[lights]\nfile = \"lights.lp\"\nintensity = \"intensity.txt\"\n{}",
-                  synthesis.noise == Noise{} ? "none" : ToText(synthesis.noise), synthesis.calibrated,
-                  synthesis.distance > 0
-                      ? fmt::format("kind = \"position\"\n\n[plane]\nwidth_mm = {}\n", FormatDouble(kWidthMm))
-                      : ""));
+  WriteFileAtomically(folder / "stack.toml", manifest);
 }
 
 }  // namespace lobefit

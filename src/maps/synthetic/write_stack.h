@@ -19,6 +19,7 @@ struct StackSynthesis {
   std::vector<Vec3> lights;
   // Widths of the picture, which is 100 mm wide, from its middle to bulbs in these directions; 0: distant lights.
   double distance = 0;
+  double camera_distance = 0;  // likewise of a camera above the middle; 0: orthographic
   bool calibrated = true;
   Noise noise;  // multiplicative and additive alone
   std::uint64_t seed = 1;

@@ -38,8 +38,7 @@ std::string TilesHtml(const std::vector<Tile>& tiles) {
 
 std::string ShareRows(const Maps& maps) {
   std::size_t inside = 0, normal = 0, lobe = 0, width = 0, none = 0, bound = 0, open = 0, few = 0;
-  const std::size_t alpha =
-      PlaneIndex(maps.planes, MapPart::kParameters, maps.lobe == MapLobe::kGgxAnisotropic ? "alpha_x" : "alpha");
+  const std::size_t alpha = PlaneIndex(maps.planes, MapPart::kParameters, WidestAlpha(maps.lobe));
   for (std::size_t t = 0; t < maps.rows.rows * maps.rows.width; ++t) {
     const auto bits = static_cast<unsigned>(maps.rows.values.back()[t]);
     if ((bits & kMapOutside) != 0) continue;
@@ -87,6 +86,12 @@ std::string EveryLight(const std::vector<RelitLight>& lights) {
   return rows;
 }
 
+std::string LightNote(const Stack& stack) {
+  if (!stack.near) return "";
+  return fmt::format("It stays {:.4g} mm from the picture's middle, as the lights are on average; light falls off as it did.",
+                     stack.near->reference_mm);
+}
+
 }  // namespace
 
 std::string MapsHtml(const Maps& maps, const Stack& stack, const MapsPage& page) {
@@ -106,6 +111,7 @@ std::string MapsHtml(const Maps& maps, const Stack& stack, const MapsPage& page)
        {"shader", "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n" +
                       std::string(kMapsGlsl)},
        {"data", LiveData(maps, stack, page, step)},
+       {"light-note", LightNote(stack)},
        {"live-note", step == 1 ? "" : fmt::format("Shown is one texel of {} x {}.", step, step)},
        {"shares", ShareRows(maps)},
        {"psnr", PsnrRows(page.lights, false) + PsnrRows(page.lights, true)},

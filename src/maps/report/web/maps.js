@@ -4,7 +4,7 @@ const data = JSON.parse(document.getElementById('data').textContent);
 const $ = id => document.getElementById(id);
 const rad = Math.PI / 180;
 const canvas = $('relit'), gl = canvas.getContext('webgl2', {alpha: true, premultipliedAlpha: false});
-let failure = '', uniforms = {}, light = [0, 0, 1];
+let failure = '', uniforms = {}, light = [0, 0, 1], distance = 0, photograph = 0;
 
 // ---- the maps as textures of half precision ----
 function halves(text) {
@@ -29,18 +29,21 @@ function prepare() {
     gl.activeTexture(gl.TEXTURE0 + unit);
     gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 2);
-    const one = name === 'lasts';
-    gl.texImage2D(gl.TEXTURE_2D, 0, one ? gl.R16F : gl.RGBA16F, data.width, data.height, 0, one ? gl.RED : gl.RGBA, gl.HALF_FLOAT, halves(data[name]));
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, data.width, data.height, 0, gl.RGBA, gl.HALF_FLOAT, halves(data[name]));
     for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
     gl.uniform1i(gl.getUniformLocation(program, name), unit);
   });
-  for (const name of ['light', 'schlick', 'exposure']) uniforms[name] = gl.getUniformLocation(program, name);
+  for (const name of ['light', 'camera', 'grid', 'fall', 'schlick', 'exposure']) uniforms[name] = gl.getUniformLocation(program, name);
   gl.uniform1f(uniforms.schlick, data.schlick ? 1 : 0);
+  gl.uniform4fv(uniforms.grid, data.grid);
+  gl.uniform2fv(uniforms.fall, data.near ? data.near.fall : [0, 0]);
 }
 function render() {
   if (!gl || failure) return;
   gl.viewport(0, 0, data.width, data.height);
-  gl.uniform3fv(uniforms.light, light);
+  gl.uniform4fv(uniforms.light, data.near ? [...light.map(x => x * distance), 1] : [...light, 0]);
+  const cameras = data.cameras;
+  gl.uniform4fv(uniforms.camera, cameras.length ? [...cameras[cameras.length > 1 ? photograph : 0], 1] : [0, 0, 1, 0]);
   gl.uniform1f(uniforms.exposure, data.exposure * Math.pow(2, Number($('exposure').value)));
   gl.drawArrays(gl.TRIANGLES, 0, 3);
 }
@@ -49,6 +52,9 @@ function render() {
 function setLight(v, chosen) {
   const length = Math.hypot(...v);
   light = v.map(x => x / length);
+  if (chosen !== undefined) photograph = chosen;
+  // A light that is dragged stays as far as the lights are on average.
+  if (data.near) distance = chosen === undefined ? data.near.reference : data.near.distances[chosen];
   $('lightX').value = Math.round(Math.atan2(light[0], light[2]) / rad);
   $('lightY').value = Math.round(Math.asin(Math.max(-1, Math.min(1, light[1]))) / rad);
   for (const id of ['lightX', 'lightY']) $(id).setAttribute('aria-valuetext', $(id).value + ' degrees');
