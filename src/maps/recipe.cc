@@ -14,8 +14,7 @@
 namespace lobefit {
 namespace {
 
-const std::vector<std::string> kKeys = {"name", "model",  "normal",      "lobe",
-                                        "loss", "shadow", "least_alpha", "share"};
+const std::vector<std::string> kKeys = {"name", "model", "normal", "lobe", "loss", "shadow", "least_alpha", "share"};
 const std::vector<std::string> kModels = {"lambert", "ggx", "ggx-anisotropic", "ellipsoid"};
 const std::vector<std::string> kShared = {"normal", "tilt", "alpha", "diffuse", "f0"};
 constexpr std::size_t kMostClusters = 64;
@@ -52,8 +51,8 @@ void ReadShare(const TomlFile& file, const toml::table& table, MapRecipe* recipe
     const bool parted = word.rfind("cluster:", 0) == 0;
     const long long count = parted ? ParseInteger(std::string_view(word).substr(8)).value_or(0) : 0;
     if (word != "image" && !(count >= 1 && count <= static_cast<long long>(kMostClusters))) {
-      file.Fail(over->source(), fmt::format("'{}' must be texel, image or cluster:N with N from 1 to {}", kShared[k],
-                                            kMostClusters));
+      file.Fail(over->source(),
+                fmt::format("'{}' must be texel, image or cluster:N with N from 1 to {}", kShared[k], kMostClusters));
     }
     shares.over[k] = parted ? ShareOver::kCluster : ShareOver::kImage;
     if (!parted) continue;
@@ -97,9 +96,10 @@ MapRecipe ReadMapRecipe(const std::filesystem::path& path) {
   const std::size_t model = table.contains("model") ? file.Word(table, "model", kModels) : 1;
   rules.lobe = static_cast<MapLobe>(model);
   if (rules.lobe == MapLobe::kEllipsoid && rules.normal_free) {
-    throw UsageError(fmt::format("{}: the tilt of an ellipsoid and a free normal say the same of a texel; take normal = "
-                                 "\"fixed\" or \"map:FILE\", or model = \"ggx-anisotropic\"",
-                                 file.name));
+    throw UsageError(
+        fmt::format("{}: the tilt of an ellipsoid and a free normal say the same of a texel; take normal = "
+                    "\"fixed\" or \"map:FILE\", or model = \"ggx-anisotropic\"",
+                    file.name));
   }
   rules.choice =
       file.Word(table, "lobe", {"by-evidence", "always"}) == 0 ? LobeChoice::kByEvidence : LobeChoice::kAlways;
@@ -112,18 +112,18 @@ MapRecipe ReadMapRecipe(const std::filesystem::path& path) {
 
 std::string RecipeText(const MapRecipe& recipe) {
   const MapRules& r = recipe.rules;
-  std::string text = fmt::format(
-      "model={} normal={} lobe={} schlick={} loss={} shadow={} alpha={}:{}", kModels[static_cast<std::size_t>(r.lobe)],
-      r.normal_free              ? "free"
-      : recipe.normal_map.empty() ? "fixed"
-                                  : "map",
-      r.choice == LobeChoice::kAlways ? "always" : "by-evidence", r.schlick, r.loss, r.shadow, r.least_alpha,
-      r.most_alpha);
+  std::string text = fmt::format("model={} normal={} lobe={} schlick={} loss={} shadow={} alpha={}:{}",
+                                 kModels[static_cast<std::size_t>(r.lobe)],
+                                 r.normal_free               ? "free"
+                                 : recipe.normal_map.empty() ? "fixed"
+                                                             : "map",
+                                 r.choice == LobeChoice::kAlways ? "always" : "by-evidence", r.schlick, r.loss,
+                                 r.shadow, r.least_alpha, r.most_alpha);
   for (std::size_t k = 0; k < kSharedKinds; ++k) {
     if (recipe.shares.over[k] == ShareOver::kTexel) continue;
-    text += fmt::format(" share.{}={}", kShared[k],
-                        recipe.shares.over[k] == ShareOver::kImage ? "image"
-                                                                  : fmt::format("cluster:{}", recipe.shares.clusters));
+    text += fmt::format(
+        " share.{}={}", kShared[k],
+        recipe.shares.over[k] == ShareOver::kImage ? "image" : fmt::format("cluster:{}", recipe.shares.clusters));
   }
   return text;
 }

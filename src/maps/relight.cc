@@ -32,8 +32,7 @@ Fallback MedianFallback(const Maps& maps) {
   if (maps.lobe == MapLobe::kNone) return fallback;
   const std::size_t f0 = PlaneIndex(maps.planes, MapPart::kParameters, maps.channels == 1 ? "f0.Y" : "f0.R");
   for (int c = 0; c < maps.channels; ++c) fallback.f0[c] = MedianOf(maps.rows.values[f0 + static_cast<std::size_t>(c)]);
-  fallback.alpha =
-      MedianOf(maps.rows.values[PlaneIndex(maps.planes, MapPart::kParameters, WidestAlpha(maps.lobe))]);
+  fallback.alpha = MedianOf(maps.rows.values[PlaneIndex(maps.planes, MapPart::kParameters, WidestAlpha(maps.lobe))]);
   return fallback;
 }
 

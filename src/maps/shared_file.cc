@@ -22,7 +22,8 @@ bool Read(const SharedJson& list, std::array<double, kCount>* values) {
 }  // namespace
 
 void WriteShared(const SharedNumbers& shared, const std::filesystem::path& file) {
-  SharedJson json = {{"unit", shared.clusters.unit}, {"centers", shared.clusters.centers}, {"groups", SharedJson::array()}};
+  SharedJson json = {
+      {"unit", shared.clusters.unit}, {"centers", shared.clusters.centers}, {"groups", SharedJson::array()}};
   for (const SharedNumbers::Group& group : shared.groups) {
     const HeldNumbers& h = group.held;
     const Vec3& n = h.point.normal;
@@ -56,7 +57,8 @@ std::optional<SharedNumbers> ReadShared(const std::filesystem::path& file) {
     MapPoint& point = group.held.point;
     const SharedJson held = item.value("held", SharedJson());
     if (!Read(item.value("normal", SharedJson()), &normal) || !Read(item.value("slope", SharedJson()), &point.slope) ||
-        !Read(item.value("width", SharedJson()), &point.width) || !Read(item.value("diffuse", SharedJson()), &point.diffuse) ||
+        !Read(item.value("width", SharedJson()), &point.width) ||
+        !Read(item.value("diffuse", SharedJson()), &point.diffuse) ||
         !Read(item.value("f0", SharedJson()), &point.f0) || !Read(item.value("error", SharedJson()), &group.error) ||
         !held.is_array() || held.size() != kSharedKinds) {
       return std::nullopt;

@@ -188,8 +188,8 @@ void StartFrom(const std::vector<const GridTexel*>& texels, const HeldNumbers& w
     held->diffuse = !std::isnan(point.diffuse[c]);
   }
   for (std::size_t c = 0; c < kMostChannels && wanted.f0; ++c) {
-    point.f0[c] =
-        Median(texels, [](const HeldNumbers& own) { return own.f0; }, [&](const MapPoint& p) { return p.f0[c]; });
+    point.f0[c] = Median(
+        texels, [](const HeldNumbers& own) { return own.f0; }, [&](const MapPoint& p) { return p.f0[c]; });
     held->f0 = !std::isnan(point.f0[c]);
   }
 }

@@ -2,6 +2,7 @@
 // against FitMany and ceres::Solve with AutoDiff, as ratios of one run.
 //   bench_maps normals STACK TRUTH [--loss X] [--shadow X] [--share] [--threads N]   TRUTH: CSV column,row,n_x,n_y,n_z
 //   bench_maps hills      hills with cast shadows, for settings of loss and shadow
+//   bench_maps search STACK [STEP]   costs against those of descents from every start, of each STEP-th texel
 //   bench_maps speed [--quick]
 #include <algorithm>
 #include <cmath>
@@ -110,6 +111,53 @@ int Normals(int argc, char** argv) {
   return 0;
 }
 
+// In how many texels the search ends above the lowest cost of descents from every start.
+int Search(const char* path, std::size_t step) {
+  const Stack stack = OpenStack(path, {});
+  MapRecipe recipe;
+  recipe.rules.schlick = stack.calibrated;
+  MapRules every = recipe.rules;
+  every.every_start = true;
+  const FittedLights lights = LightsWithout(stack, {});
+  const int channels = static_cast<int>(stack.channels);
+  TexelFitter quick(recipe.rules, {lights.directions, {}}, channels), whole(every, {lights.directions, {}}, channels);
+  StackReader reader(stack);
+  std::vector<float> values(stack.channels * lights.index.size());
+  std::size_t texels = 0, above = 0, far_above = 0, other_model = 0, shown = 0;
+  double spent[2] = {};
+  for (std::size_t y = 0; y < stack.height; ++y) {
+    const StackBand band = reader.Read(y, 1);
+    for (std::size_t x = y % step; x < stack.width; x += step) {
+      if (!stack.Holds(y * stack.width + x)) continue;
+      Gather(band, x, stack.channels, lights, stack.lights.size(), values.data());
+      MapPoint ends[2];
+      double start = Seconds();
+      const TexelFit a = quick.Fit(values.data(), lights.index.size(), {}, &ends[0]);
+      spent[0] += Seconds() - start, start = Seconds();
+      const TexelFit b = whole.Fit(values.data(), lights.index.size(), {}, &ends[1]);
+      spent[1] += Seconds() - start;
+      if ((a.status & kMapTooFew) != 0) continue;
+      ++texels;
+      if ((a.status & kMapNoLobe) != (b.status & kMapNoLobe)) ++other_model;
+      if (!(a.cost > b.cost * (1 + 1e-6))) continue;
+      ++above, far_above += a.cost > 1.01 * b.cost ? 1 : 0;
+      if (shown++ % 50 != 0) continue;
+      std::printf(
+          "  %zu,%zu cost +%.2e, steps %d %d, status %u %u, normals %.2f deg apart, alpha %.4f %.4f, f0 %.3g %.3g\n", x,
+          y, a.cost / b.cost - 1, a.iterations, b.iterations, a.status, b.status, Angle(ends[0].normal, ends[1].normal),
+          std::exp(ends[0].width[0]), std::exp(ends[1].width[0]), ends[0].f0[0], ends[1].f0[0]);
+    }
+  }
+  const auto percent = [&](std::size_t count) {
+    return 100 * static_cast<double>(count) / static_cast<double>(texels);
+  };
+  std::printf(
+      "%zu texels: %.3f %% above by 1e-6, %.3f %% by 1 %%, %.3f %% with the other model; %.1f and %.1f us a texel\n",
+      texels, percent(above), percent(far_above), percent(other_model), 1e6 * spent[0] / static_cast<double>(texels),
+      1e6 * spent[1] / static_cast<double>(texels));
+  return 0;
+}
+
 // Mean error of the normals of hills, with and without cast shadows.
 int ShadedHills() {
   const std::size_t size = 64;
@@ -204,8 +252,7 @@ int Speed(bool quick) {
   double start = Seconds();
   std::vector<TexelFit> fits;
   std::vector<MapPoint> points(texels);
-  for (std::size_t k = 0; k < texels; ++k)
-    fits.push_back(fitter.Fit(values[k].data(), lights.size(), {}, &points[k]));
+  for (std::size_t k = 0; k < texels; ++k) fits.push_back(fitter.Fit(values[k].data(), lights.size(), {}, &points[k]));
   const double ours = (Seconds() - start) / static_cast<double>(texels);
   double iterations = 0;
   for (const TexelFit& fit : fits) iterations += fit.iterations;
@@ -266,8 +313,11 @@ int Speed(bool quick) {
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   if (what == "normals" && argc >= 4) return lobefit::Normals(argc, argv);
+  if (what == "search" && argc >= 3) {
+    return lobefit::Search(argv[2], argc > 3 ? static_cast<std::size_t>(std::max(1, std::atoi(argv[3]))) : 1);
+  }
   if (what == "hills") return lobefit::ShadedHills();
   if (what == "speed") return lobefit::Speed(argc > 2 && std::strcmp(argv[2], "--quick") == 0);
-  std::fprintf(stderr, "bench_maps normals STACK TRUTH.csv | hills | speed [--quick]\n");
+  std::fprintf(stderr, "bench_maps normals STACK TRUTH.csv | search STACK [STEP] | hills | speed [--quick]\n");
   return 2;
 }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/maps/output/pixels.h"
 #include "lobefit/maps/run.h"
@@ -19,7 +20,8 @@ constexpr std::size_t kSide = 36;
 struct Material {
   double diffuse[3], f0, alpha;
 };
-constexpr Material kMaterials[3] = {{{0.5, 0.1, 0.1}, 0.05, 0.3}, {{0.1, 0.4, 0.1}, 0.2, 0.15}, {{0.1, 0.1, 0.5}, 0.1, 0.2}};
+constexpr Material kMaterials[3] = {
+    {{0.5, 0.1, 0.1}, 0.05, 0.3}, {{0.1, 0.4, 0.1}, 0.2, 0.15}, {{0.1, 0.1, 0.5}, 0.1, 0.2}};
 
 // Half of the texels are of the first, a third of the second.
 std::size_t MaterialOf(std::size_t texel) {
@@ -166,7 +168,8 @@ TEST_F(SharedNumbersTest, MapsOfNormalsThatAreNoneAreRefused) {
 }
 
 TEST_F(SharedNumbersTest, SharesThatContradictThemselvesAreRefused) {
-  ExpectRefused("[share]\nalpha = \"cluster:0\"\n", "r.toml:2: 'alpha' must be texel, image or cluster:N with N from 1");
+  ExpectRefused("[share]\nalpha = \"cluster:0\"\n",
+                "r.toml:2: 'alpha' must be texel, image or cluster:N with N from 1");
   ExpectRefused("[share]\nalpha = \"clusters:4\"\n", "'alpha' must be texel, image or cluster:N");
   ExpectRefused("[share]\nalpha = \"cluster:4\"\nf0 = \"cluster:5\"\n", "must name the same N");
   ExpectRefused("[share]\nwidth = \"image\"\n", "unknown key 'width' in [share]");

@@ -10,7 +10,6 @@
 namespace lobefit {
 namespace {
 
-
 // Cameras of their own, among them slanted ones.
 LightPaths SomePaths(std::size_t count) {
   LightPaths paths = {DomeLights(count, 80 * (kPi / 180)), DomeLights(count, 60 * (kPi / 180))};
@@ -118,7 +117,7 @@ class StackFits : public FolderTest {
 TEST_F(StackFits, ACameraAtAPositionSeesEachTexelFromItsOwnSide) {
   const Hills hills = MakeHills(20, MapLobe::kGgxAnisotropic, 0.6);
   StackSynthesis synthesis;
-  synthesis.lights = DomeLights(64, 60 * (kPi / 180));
+  synthesis.lights = DomeLights(128, 60 * (kPi / 180));
   synthesis.distance = 2, synthesis.camera_distance = 1.2, synthesis.bits = 32;
   WriteStack(hills.maps, synthesis, folder_ / "s");
   Stack stack = OpenStack(folder_ / "s", {});

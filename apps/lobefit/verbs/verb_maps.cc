@@ -76,8 +76,8 @@ std::string SharedLine(const SharedNumbers& shared, std::size_t group, MapLobe l
   if (held.diffuse) words.emplace_back("diffuse");
   if (held.f0) words.emplace_back("f0");
   const std::string of = shared.clusters.centers.empty() ? "the image" : fmt::format("cluster {}", group + 1);
-  return fmt::format("  shared       {}: {} ({} texels asked)\n", of, words.empty() ? "nothing is determined" : Join(words),
-                     g.texels);
+  return fmt::format("  shared       {}: {} ({} texels asked)\n", of,
+                     words.empty() ? "nothing is determined" : Join(words), g.texels);
 }
 
 std::string Summary(const MapsResult& result, const MapsOptions& options) {
@@ -184,7 +184,8 @@ std::function<int()> SetUpMaps(CLI::App* app, CommonOptions* common) {
                   "only rows A:B (A to B-1, from 0 at the top), into NAME.maps.part; --merge joins");
   app->add_flag("--merge", verb->merge,
                 "join the rows that runs with --rows have fitted; says which are missing (exit 5)");
-  app->add_option("--normal-y", verb->normal_y, "y of NAME.normal.png, and of a recipe's normal = \"map:FILE\": up (OpenGL, glTF) or down (DirectX)")
+  app->add_option("--normal-y", verb->normal_y,
+                  "y of NAME.normal.png, and of a recipe's normal = \"map:FILE\": up (OpenGL, glTF) or down (DirectX)")
       ->check(CLI::IsMember({"up", "down"}));
   return [=] { return RunMapsVerb(*verb, *common); };
 }

@@ -12,15 +12,19 @@ constexpr int kMostIterations = 100;
 // Of the cost, a light: below, values in single precision say nothing.
 constexpr double kExact = 1e-20;
 
-// A decrease below this part of the cost is near the minimum; a descent whose steps promise less than a tenth of what it
-// is behind will not catch up.
-constexpr double kNear = 0.2, kHopeless = 10;
+// Of the mean of ln(1 + |r|^2 / c^2) over the lights.
+constexpr double kRough = 0.25;
+// A decrease below this part of the cost is near the minimum, of one that is rough the second; a descent whose steps
+// promise less than `kTrusted` of the cost, and less than a third of what it is behind, will not catch up.
+constexpr double kNear = 0.2, kNearOfRough = 1e-4, kTrusted = 0.2, kHopeless = 3;
 // Below this ratio of what a step did to what it promised, the quadratic says nothing about it.
 constexpr double kFarBeyond = -8;
 // A step that promises less than this part of the cost stays in its valley.
 constexpr double kClose = 1e-3;
 // Where a step promised less than this part of the cost and kept it, what remains is a small part of that.
 constexpr double kLastStep = 1e-7;
+// Of the cosine between a step and what the gradient changed by beyond what was known.
+constexpr double kLeastSecant = 1e-3;
 // Of the damping after a step that was refused.
 constexpr double kLeastRefused = 1e-3;
 
@@ -87,7 +91,7 @@ std::array<bool, kMostUnknowns> HeldAt(const MapModel& model, const Place& place
   const AmplitudeBounds& amplitudes = bounds.amplitudes;
   for (int j = 0; j < model.Unknowns(); ++j) {
     const bool is_diffuse = j >= model.Shape() && (j - model.Shape()) % model.PerChannel() == 0;
-    const bool from_elsewhere = j < 2                 ? (model.TurnsNormal() ? bounds.normal_held : bounds.slope_held)
+    const bool from_elsewhere = j < 2               ? (model.TurnsNormal() ? bounds.normal_held : bounds.slope_held)
                                 : j < model.Shape() ? bounds.width_held
                                 : is_diffuse        ? amplitudes.diffuse_held
                                                     : amplitudes.f0_held;
@@ -139,35 +143,41 @@ bool BoundedStep(int unknowns, const Place& place, const MapVector& gradient, co
   return true;
 }
 
-// The matrix leaves out the model's own second derivatives: rank one of them from the change of the gradient over the last
-// step [Dennis, Gay and Welsch 1981, of one step], unless the curvature along it is not positive.
-bool AddSecant(int unknowns, const std::array<bool, kMostUnknowns>& held, const MapVector& step,
-               const MapVector& before, const MapVector& gradient, const MapMatrix& hessian, MapMatrix* with_secant) {
+// The matrix leaves out the model's own second derivatives: `secant` gathers them from the changes of the gradient over
+// the steps, each of rank one [symmetric rank one, Conn, Gould and Toint 1991; structured as Dennis, Gay and Welsch 1981].
+void UpdateSecant(int unknowns, const std::array<bool, kMostUnknowns>& held, const MapVector& step,
+                  const MapVector& before, const MapVector& gradient, const MapMatrix& hessian, MapMatrix* secant) {
   MapVector missing = {};
-  double along = 0, curvature = 0, whole = 0;
+  double along = 0, whole = 0, size = 0;
   for (int j = 0; j < unknowns; ++j) {
     if (held[j]) continue;
-    double bent = 0;
-    for (int k = 0; k < unknowns; ++k) bent += held[k] ? 0 : hessian[j][k] * step[k];
-    missing[j] = gradient[j] - before[j] - bent;
+    double bent = 0, known = 0;
+    for (int k = 0; k < unknowns; ++k) {
+      if (held[k]) continue;
+      bent += hessian[j][k] * step[k], known += (*secant)[j][k] * step[k];
+    }
+    missing[j] = gradient[j] - before[j] - bent - known;
     along += missing[j] * step[j], whole += bent * step[j];
-    curvature += (gradient[j] - before[j]) * step[j];
+    size += missing[j] * missing[j] / hessian[j][j];
   }
-  if (!(curvature > 0.1 * whole) || !(std::fabs(along) > 1e-3 * whole)) return false;
+  // Near 0 the quotient says nothing.
+  if (!(std::fabs(along) > kLeastSecant * std::sqrt(whole * size))) return;
   for (int j = 0; j < unknowns; ++j) {
-    const double share = missing[j] / along;
-    for (int k = 0; k < unknowns; ++k) (*with_secant)[j][k] = hessian[j][k] + share * missing[k];
+    for (int k = 0; k < unknowns; ++k) (*secant)[j][k] += missing[j] * missing[k] / along;
   }
-  return true;
 }
 
 }  // namespace
 
+bool IsRough(double cost, double loss, std::size_t lights) {
+  return cost > kRough * 0.5 * loss * loss * static_cast<double>(lights);
+}
+
 int FreeUnknowns(const MapModel& model, const MapBounds& bounds) {
   const int turns = (model.TurnsNormal() ? bounds.normal_held : bounds.slope_held) ? 0 : 2;
   const int widths = bounds.width_held ? 0 : model.Shape() - 2;
-  const int amplitudes = (bounds.amplitudes.diffuse_held ? 0 : 1) +
-                         (model.lobe == MapLobe::kNone || bounds.amplitudes.f0_held ? 0 : 1);
+  const int amplitudes =
+      (bounds.amplitudes.diffuse_held ? 0 : 1) + (model.lobe == MapLobe::kNone || bounds.amplitudes.f0_held ? 0 : 1);
   return turns + widths + model.channels * amplitudes;
 }
 
@@ -183,8 +193,9 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
   MapDescent at = {start, 0, false, 0};
   MapVector gradient = {}, next_gradient = {}, before = {}, step = {};
   // Turned about, not copied.
-  MapMatrix matrices[3] = {};
-  MapMatrix *hessian = &matrices[0], *next_hessian = &matrices[1], *with_secant = &matrices[2];
+  MapMatrix matrices[2] = {}, secant = {}, with_secant = {};
+  MapMatrix *hessian = &matrices[0], *next_hessian = &matrices[1];
+  bool has_secant = false;
   double damping = 1e-4;
   bool near = false, was_near = false, known_here = false;
   while (at.iterations < kMostIterations) {
@@ -195,11 +206,17 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
     if (known != nullptr && IsSame(at.point, known->point)) return at;
     const Place place = PlaceOf(model, at.point, bounds);
     const std::array<bool, kMostUnknowns> held = HeldAt(model, place, bounds, gradient);
-    bool corrected = was_near && AddSecant(unknowns, held, step, before, gradient, *hessian, with_secant);
+    if (was_near) UpdateSecant(unknowns, held, step, before, gradient, *hessian, &secant);
+    if (!was_near && has_secant) secant = {};
+    has_secant = was_near;
+    bool corrected = has_secant;
+    for (int j = 0; corrected && j < unknowns; ++j) {
+      for (int k = 0; k < unknowns; ++k) with_secant[j][k] = (*hessian)[j][k] + secant[j][k];
+    }
     bool moved = false;
     for (; !moved && at.iterations < kMostIterations; ++at.iterations) {
       double promised;
-      if (!BoundedStep(unknowns, place, gradient, corrected ? *with_secant : *hessian, damping, held, &step,
+      if (!BoundedStep(unknowns, place, gradient, corrected ? with_secant : *hessian, damping, held, &step,
                        &promised)) {
         if (corrected) {
           corrected = false;
@@ -213,7 +230,9 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
         at.converged = true;
         return at;
       }
-      if (known != nullptr && near && damping < 1e-2 && at.cost - kHopeless * promised > known->cost) return at;
+      if (known != nullptr && promised < kTrusted * at.cost && damping < 1e-2 &&
+          at.cost - kHopeless * promised > known->cost)
+        return at;
       // A normal turns by at most half a radian a step: beyond, the tangents are no measure.
       const double turn = std::hypot(step[0], step[1]);
       if (turn > 0.5) step[0] *= 0.5 / turn, step[1] *= 0.5 / turn;
@@ -239,8 +258,10 @@ MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint&
         damping = std::max(damping, 1e-12);
         was_near = near && promised < kClose * at.cost;
         before = gradient;
-        known_here = near && at.cost - cost < kNear * at.cost;
-        near = at.cost - cost < kNear * at.cost;
+        const double near_below = IsRough(cost, loss, data.lights.count) ? kNearOfRough : kNear;
+        const bool is_near = at.cost - cost < near_below * at.cost;
+        known_here = near && is_near;
+        near = is_near;
         if (known_here) gradient = next_gradient, std::swap(hessian, next_hessian);
         at.point = next;
         at.cost = cost;

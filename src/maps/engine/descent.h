@@ -23,6 +23,9 @@ struct MapDescent {
   int iterations = 0;
 };
 
+// Whether residuals reach the loss's width, where there may be many valleys and a quadratic says little of them.
+bool IsRough(double cost, double loss, std::size_t lights);
+
 // Ends where the step that remains promises less than `tolerance` of the cost; not converged where it comes to where
 // `known` (unless null) is the end, or where `known` is better by much more than the steps still promise. Domain: start
 // within the bounds.

@@ -21,7 +21,7 @@ MapErrors ErrorsOf(const MapModel& model, const TexelData& data, const MapPoint&
   }
   if (!errors.regular) return errors;
   // A_l = J^T W J with W = w 1 + bend r r^T: without this light the solution moves by (A - A_l)^-1 J^T w r =
-  // A^-1 J^T (1 - W J A^-1 J^T)^-1 w r.
+  // A^-1 J^T (1 - W J A^-1 J^T)^-1 w r, and by A^-1 J^T w r where its own pull on the solution is left in its residual.
   const auto moved = objective->Moves(model, data, InverseOf(unknowns, held, factor));
   AddGram(data.lights.live.data(), moved.data(), unknowns, data.lights.padded, &errors.covariance);
   for (int j = 0; j < unknowns; ++j) {

@@ -10,9 +10,11 @@ struct MapErrors {
   MapMatrix covariance = {};  // of the unknowns; NaN in rows and columns of held ones
 };
 
-// Sandwich of the whole second derivatives of the loss (with those of the model where it is linear) around the
-// one-step jackknife over lights: what the solution moves by when a light is left out [MacKinnon and White 1985, HC3],
-// the channels of one light together. Robust against noise that differs from light to light.
+// Sandwich of the whole second derivatives of the loss (with those of the model where it is linear) around what the
+// solution moves by when a light is left out, the channels of one light together: half way between the one-step
+// jackknife [MacKinnon and White 1985, HC3], which overstates errors where few lights decide, and residuals as they are
+// [White 1980, HC0], which understate them. In one channel it is HC2 to second order in the light's leverage, and above
+// it. Robust against noise that differs from light to light.
 MapErrors ErrorsOf(const MapModel& model, const TexelData& data, const MapPoint& point, const MapBounds& bounds,
                    double loss, TexelObjective* objective);
 

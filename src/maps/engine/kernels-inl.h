@@ -90,7 +90,7 @@ struct LogSum {
 #include "lobefit/maps/engine/cost_kernels-inl.h"
 #include "lobefit/maps/engine/matrix_kernels-inl.h"
 #include "lobefit/maps/engine/shape_kernels-inl.h"
-#include "lobefit/maps/engine/general_kernels-inl.h"
+#include "lobefit/maps/engine/views_kernels-inl.h"
 
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums) {
   const bool lobe = terms.shape > 2, color = terms.channels == 3;

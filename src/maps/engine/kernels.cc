@@ -53,10 +53,10 @@ struct Kernels {
   decltype(&plain::MovesOf) moves_of;
 };
 
-#define LOBEFIT_KERNELS(set)                                                                                 \
-  Kernels {                                                                                                  \
-    set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe, \
-        set::GeneralLobe, set::SumAmplitudes, set::CostOf, set::RowsOf, set::AddSquares, set::AddGram, set::MovesOf            \
+#define LOBEFIT_KERNELS(set)                                                                                        \
+  Kernels {                                                                                                         \
+    set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe,        \
+        set::GeneralLobe, set::SumAmplitudes, set::CostOf, set::RowsOf, set::AddSquares, set::AddGram, set::MovesOf \
   }
 
 Kernels Choose() {

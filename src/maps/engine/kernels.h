@@ -86,7 +86,7 @@ double RowsOf(const LightTerms& terms, Curvature curvature, const RowArrays& arr
 void AddSquares(const LightTerms& terms, const double* weight, MapMatrix* matrix);
 // Adds sum over lights of factor row_j row_k, below the diagonal.
 void AddGram(const double* factor, const double* const* rows, int count, std::size_t padded, MapMatrix* matrix);
-// moved[j][l]: by how much unknown j moves where light l is left out (errors.cc); `inverse` has zeros for held unknowns.
+// moved[j][l]: by how much unknown j moves with light l (errors.cc); `inverse` has zeros for held unknowns.
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved);
 
 }  // namespace lobefit

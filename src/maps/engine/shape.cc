@@ -58,7 +58,8 @@ void EvaluateShape(MapLobe lobe, const MapPoint& point, const LightArrays& light
   if (!general) return AnisotropicLobe(widths, lights, out->specular.data(), wanted);
   GeneralLobe(widths, {point.slope[0], point.slope[1], !turns}, lights, out->specular.data(), wanted);
   // One width: ln a and ln c move together.
-  for (std::size_t l = 0; gradient && lobe == MapLobe::kGgx && l < lights.padded; ++l) dspecular[2][l] += dspecular[4][l];
+  for (std::size_t l = 0; gradient && lobe == MapLobe::kGgx && l < lights.padded; ++l)
+    dspecular[2][l] += dspecular[4][l];
 }
 
 }  // namespace lobefit

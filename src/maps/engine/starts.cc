@@ -58,7 +58,8 @@ Vec3 HighlightNormal(const TexelData& data, const LightVector& mean, const MapPo
     const double e = excess(l);
     if (e < 0.5 * most) continue;
     const double weight = e * e / std::sqrt(lights.square[l]);
-    sum = sum + weight * Vec3{lights.x[l] + lights.out_x[l], lights.y[l] + lights.out_y[l], lights.z[l] + lights.out_z[l]};
+    sum = sum +
+          weight * Vec3{lights.x[l] + lights.out_x[l], lights.y[l] + lights.out_y[l], lights.z[l] + lights.out_z[l]};
   }
   return AboveHorizon(sum, std::max(0.1, bounds.least_normal_z));
 }

@@ -7,7 +7,9 @@
 namespace lobefit {
 namespace {
 
-constexpr double kStartAlphas[] = {0.05, 0.1, 0.2, 0.4};
+constexpr double kStartAlphas[] = {0.05, 0.1, 0.2, 0.4, 0.8};
+// Cosine of the angle between normals that lead to the same valley.
+constexpr double kSamePeak = 0.9998;
 
 // Mean slopes, in the frame of the normal, of a lobe about `peak`.
 std::array<double, 2> SlopeTowards(const Vec3& normal, const Vec3& peak, double most) {
@@ -65,38 +67,51 @@ bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit)
   }
   fit->used = static_cast<std::uint32_t>(used);
   const MapModel model = {rules_.lobe, channels_, rules_.schlick};
-  return used >= 4 && used * static_cast<std::size_t>(channels_) > static_cast<std::size_t>(FreeUnknowns(model, bounds_));
+  return used >= 4 &&
+         used * static_cast<std::size_t>(channels_) > static_cast<std::size_t>(FreeUnknowns(model, bounds_));
 }
 
 MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent& lambert) {
   // The lobe about the Lambertian normal, and about what mirrors the brightest lights.
   const Vec3 peaks[2] = {lambert.point.normal, HighlightNormal(data_, mean_, lambert.point, bounds_)};
-  MapPoint starts[2];
-  double costs[2];
   const bool peak_held = model.TurnsNormal() ? bounds_.normal_held : bounds_.slope_held;
-  const int count = peak_held ? 1 : 2;
-  for (int k = 0; k < count; ++k) {
-    costs[k] = std::numeric_limits<double>::infinity();
+  struct Start {
+    MapPoint point;
+    double cost;
+    int peak;
+  };
+  std::array<Start, 2 * std::size(kStartAlphas)> starts;
+  std::size_t count = 0;
+  for (int k = 0; k < (peak_held || Dot(peaks[0], peaks[1]) > kSamePeak ? 1 : 2); ++k) {
     for (const double alpha : kStartAlphas) {
-      MapPoint point = lambert.point;
-      if (!bounds_.width_held) point.width = {std::log(alpha), 0, std::log(alpha)};
-      if (model.TurnsNormal()) point.normal = peaks[k];
-      if (!model.TurnsNormal() && k == 1) point.slope = SlopeTowards(point.normal, peaks[k], bounds_.most_slope);
-      const double cost = objective_.CostOfStart(model, data_, rules_.loss, bounds_.amplitudes, &point);
-      if (cost < costs[k]) costs[k] = cost, starts[k] = point;
+      Start& start = starts[count++];
+      start.point = lambert.point, start.peak = k;
+      if (!bounds_.width_held) start.point.width = {std::log(alpha), 0, std::log(alpha)};
+      if (model.TurnsNormal()) start.point.normal = peaks[k];
+      if (!model.TurnsNormal() && k == 1) {
+        start.point.slope = SlopeTowards(start.point.normal, peaks[k], bounds_.most_slope);
+      }
+      start.cost = objective_.CostOfStart(model, data_, rules_.loss, bounds_.amplitudes, &start.point);
       if (bounds_.width_held) break;
     }
   }
-  const int first = count == 2 && costs[1] < costs[0] ? 1 : 0;
-  MapDescent best = Descend(model, data_, starts[first], bounds_, rules_.loss, &objective_);
-  if (count == 1) return best;
-  // The other normal may lie in another valley: near one it leads to the same.
-  if (Dot(peaks[0], peaks[1]) > 0.9998) return best;
-  const int other = 1 - first;
-  const MapDescent second =
-      Descend(model, data_, starts[other], bounds_, rules_.loss, &objective_, kFineTolerance, &best);
-  const int iterations = best.iterations + second.iterations;
-  if (second.converged && second.cost < best.cost) best = second;
+  std::sort(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(count),
+            [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  // From the best start and the best one about the other peak; where the minimum is rough from all.
+  const auto other = std::find_if(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(count),
+                                  [&](const Start& start) { return start.peak != starts[0].peak; });
+  const std::size_t few = other == starts.begin() + static_cast<std::ptrdiff_t>(count) ? 1 : 2;
+  if (few == 2) std::rotate(starts.begin() + 1, other, other + 1);
+  MapDescent best;
+  best.cost = std::numeric_limits<double>::infinity();
+  int iterations = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k >= few && !rules_.every_start && !IsRough(best.cost, rules_.loss, data_.lights.count)) break;
+    const MapDescent descent = Descend(model, data_, starts[k].point, bounds_, rules_.loss, &objective_, kFineTolerance,
+                                       k == 0 || rules_.every_start ? nullptr : &best);
+    iterations += descent.iterations;
+    if (k == 0 || (descent.converged && descent.cost < best.cost)) best = descent;
+  }
   best.iterations = iterations;
   return best;
 }

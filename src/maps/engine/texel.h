@@ -19,7 +19,8 @@ struct MapRules {
   double loss = 0.05;    // of Cauchy, in units of the texel's 90th percentile
   double shadow = 0.1;   // values below, in the same unit, are set aside
   double least_alpha = 0.01, most_alpha = 1;
-  bool normal_free = true;  // else +z
+  bool normal_free = true;   // else +z
+  bool every_start = false;  // a descent from each, not only from the best ones
 };
 
 // Why numbers of a texel are NaN or to be doubted.

@@ -48,9 +48,9 @@ Maps ReadMapsExr(const std::filesystem::path& path, const std::function<bool(con
     Maps maps;
     maps.channels = list.findChannel("diffuse.R") != nullptr ? 3 : 1;
     maps.lobe = list.findChannel("tilt_x_deg") != nullptr ? MapLobe::kEllipsoid
-                : list.findChannel("alpha_x") != nullptr ? MapLobe::kGgxAnisotropic
-                : list.findChannel("alpha") != nullptr ? MapLobe::kGgx
-                                                       : MapLobe::kNone;
+                : list.findChannel("alpha_x") != nullptr  ? MapLobe::kGgxAnisotropic
+                : list.findChannel("alpha") != nullptr    ? MapLobe::kGgx
+                                                          : MapLobe::kNone;
     const int quality = PartIndex(file, PartName(MapPart::kQuality));
     const bool clusters = quality >= 0 && file.header(quality).channels().findChannel("cluster") != nullptr;
     maps.planes = PlanesFor({maps.lobe, maps.channels, clusters});

@@ -122,12 +122,14 @@ void ReadCamera(const Manifest& manifest, const toml::table& table, Stack* stack
     manifest.Fail(node->source(), "an orthographic camera has no position; leave position and file out");
   }
   if (!placed) {
-    if (!orthographic) manifest.Fail(node->source(), "kind = \"position\" needs position = [x, y, z] or file = \"...\"");
+    if (!orthographic)
+      manifest.Fail(node->source(), "kind = \"position\" needs position = [x, y, z] or file = \"...\"");
     return;
   }
   std::vector<Vec3> places;
   if (const toml::node* position = camera->get("position")) {
-    if (camera->contains("file")) manifest.Fail(node->source(), "position and file say the same; leave one of them out");
+    if (camera->contains("file"))
+      manifest.Fail(node->source(), "position and file say the same; leave one of them out");
     const toml::array* list = position->as_array();
     double at[3] = {kNan, kNan, kNan};
     for (std::size_t k = 0; list != nullptr && list->size() == 3 && k < 3; ++k) {

@@ -38,8 +38,9 @@ StackFiles ReadLayout(const Path& path) {
   }
   if (light_files.size() == 1) return ReadLayout(light_files[0]);
   if (light_files.size() > 1) {
-    throw InputError(fmt::format("{}: {} light files (.lp, .dome, .json) are in this folder; name the one that is meant",
-                                 PrintableName(path), light_files.size()));
+    throw InputError(
+        fmt::format("{}: {} light files (.lp, .dome, .json) are in this folder; name the one that is meant",
+                    PrintableName(path), light_files.size()));
   }
   if (HasAngleNames(path)) return ReadAngleNames(path);
   throw InputError(

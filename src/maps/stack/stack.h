@@ -44,7 +44,7 @@ struct Stack {
   std::size_t width = 0, height = 0, channels = 0;
   std::filesystem::path normal_map;  // of normals that are held: README.md of maps; empty: none
   bool normal_map_down = false;      // its y runs down
-  std::vector<std::uint8_t> mask;  // [row width + column], 0: no texel; empty: all are
+  std::vector<std::uint8_t> mask;    // [row width + column], 0: no texel; empty: all are
   Response response;
   std::filesystem::path dark;                // photograph without a light, subtracted; empty: none
   std::vector<std::filesystem::path> white;  // of a white matt board under each light, divided by; empty: none

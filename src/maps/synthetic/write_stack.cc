@@ -129,8 +129,7 @@ void WriteStack(const Maps& maps, const StackSynthesis& synthesis, const std::fi
       synthesis.noise == Noise{} ? "none" : ToText(synthesis.noise), synthesis.calibrated);
   if (synthesis.distance > 0) manifest += "kind = \"position\"\n";
   if (synthesis.camera_distance > 0) {
-    manifest +=
-        fmt::format("\n[camera]\nposition = [0, 0, {}]\n", FormatDouble(synthesis.camera_distance * kWidthMm));
+    manifest += fmt::format("\n[camera]\nposition = [0, 0, {}]\n", FormatDouble(synthesis.camera_distance * kWidthMm));
   }
   if (GeometryOf(maps, synthesis).MovesPaths()) {
     manifest += fmt::format("\n[plane]\nwidth_mm = {}\n", FormatDouble(kWidthMm));

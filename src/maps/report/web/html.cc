@@ -88,8 +88,9 @@ std::string EveryLight(const std::vector<RelitLight>& lights) {
 
 std::string LightNote(const Stack& stack) {
   if (!stack.near) return "";
-  return fmt::format("It stays {:.4g} mm from the picture's middle, as the lights are on average; light falls off as it did.",
-                     stack.near->reference_mm);
+  return fmt::format(
+      "It stays {:.4g} mm from the picture's middle, as the lights are on average; light falls off as it did.",
+      stack.near->reference_mm);
 }
 
 }  // namespace
