@@ -1,10 +1,16 @@
 // Cameras that stand somewhere, ellipsoids over a normal that is held, and the lobe that both need.
 #include "tests/maps/texels.h"
 #include "tests/support/folder_test.h"
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/core/brdf/brdf.h"
 #include "lobefit/core/brdf/ggx_lobe.h"
+#include "lobefit/maps/output/pixels.h"
 #include "lobefit/maps/run.h"
 
 namespace lobefit {
@@ -142,6 +148,116 @@ TEST_F(StackFits, ACameraAtAPositionSeesEachTexelFromItsOwnSide) {
     worst = std::isfinite(off) ? std::max(worst, off) : worst;
   }
   EXPECT_GT(worst, 1 * (kPi / 180));
+}
+
+// A capture as MaterialGAN's: a flash beside the camera, at nine places over a square of 20 cm.
+class Capture : public StackFits {
+ protected:
+  static constexpr std::size_t kSide = 16;
+
+  void Write(const nlohmann::json& json) const { WriteFileAtomically(folder_ / "c.json", json.dump()); }
+  nlohmann::json Json() const {
+    nlohmann::json places = nlohmann::json::array();
+    for (int k = 0; k < 9; ++k) places.push_back({6.0 * (k % 3 - 1), 6.0 * (k / 3 - 1) + 0.5, 24.0 + (k % 2)});
+    return {{"im_size", 20},        {"target_dir", "."},   {"idx", {0, 1, 2, 3, 4, 5, 6, 7, 8}},
+            {"camera_pos", places}, {"light_pos", places}, {"light_pow", {1500, 1400, 1300}}};
+  }
+  void WriteImages(const std::vector<std::vector<double>>& radiance) const {
+    for (std::size_t k = 0; k < radiance.size(); ++k) {
+      std::vector<std::uint16_t> pixels;
+      for (const double v : radiance[k]) {
+        pixels.push_back(static_cast<std::uint16_t>(std::lround(255 * std::pow(std::min(v, 1.0), 1 / 2.2))));
+      }
+      WriteFileAtomically(folder_ / fmt::format("{:02}.png", k), EncodePixels(pixels, kSide, kSide, 3, 8));
+    }
+  }
+  void ExpectRefused(const nlohmann::json& json, const std::string& words) const {
+    Write(json);
+    try {
+      OpenStack(folder_ / "c.json", {});
+      ADD_FAILURE() << words;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(words));
+    }
+  }
+};
+
+TEST_F(Capture, HasAbsoluteValuesAndAViewATexel) {
+  // A matt square of albedo 0.5 in the plane: radiance = power albedo / pi cos / d^2, in cm.
+  const nlohmann::json json = Json();
+  std::vector<std::vector<double>> images;
+  for (const nlohmann::json& at : json["light_pos"]) {
+    std::vector<double> image;
+    for (std::size_t t = 0; t < kSide * kSide; ++t) {
+      const double x = ((static_cast<double>(t % kSide) + 0.5) / kSide - 0.5) * 20;
+      const double y = (0.5 - (static_cast<double>(t / kSide) + 0.5) / kSide) * 20;
+      const Vec3 beam = {at[0].get<double>() - x, at[1].get<double>() - y, at[2].get<double>()};
+      const double square = Dot(beam, beam), cosine = beam.z / std::sqrt(square);
+      for (int c = 0; c < 3; ++c) image.push_back((1500 - 100 * c) * 0.5 / kPi * cosine / square);
+    }
+    images.push_back(image);
+  }
+  WriteImages(images);
+  Write(json);
+  const Stack stack = OpenStack(folder_, {});
+  EXPECT_EQ(stack.layout, "MaterialGAN capture");
+  EXPECT_TRUE(stack.calibrated);
+  ASSERT_EQ(stack.cameras.size(), 9U);
+  EXPECT_EQ(stack.cameras[0].x, -60);
+  const Maps maps = Fitted(stack, {});
+  for (std::size_t t = 0; t < kSide * kSide; ++t) {
+    EXPECT_LT(test::AngleBetween(test::NormalAt(maps, t), {0, 0, 1}), 1 * (kPi / 180)) << t;
+    for (const char* name : {"diffuse.R", "diffuse.G", "diffuse.B"}) {
+      EXPECT_NEAR(test::At(maps, MapPart::kParameters, name, t), 0.5, 0.01) << name << t;
+    }
+  }
+}
+
+TEST_F(Capture, FaultsAreNamed) {
+  WriteImages(std::vector<std::vector<double>>(9, std::vector<double>(3 * kSide * kSide, 0.2)));
+  nlohmann::json json = Json();
+  json.erase("light_pow");
+  ExpectRefused(json, "'light_pow' is missing");
+  json = Json(), json["light_pos"][3][2] = -4;
+  ExpectRefused(json, "light 4 at z = -40 mm is not in front of the picture");
+  json = Json(), json["camera_pos"][2] = {1, 2};
+  ExpectRefused(json, "camera_pos[2] must be three finite numbers");
+  json = Json(), json["camera_pos"].erase(0);
+  ExpectRefused(json, "8 places of cameras, but 9 of lights");
+  json = Json(), json["im_size"] = "20";
+  ExpectRefused(json, "im_size must be a positive number");
+  json = Json(), json["idx"] = {0, 1};
+  ExpectRefused(json, "2 numbers in idx, but 9 places of lights");
+  json = Json(), json["light_pow"] = {1, 0, 1};
+  ExpectRefused(json, "light_pow must be positive");
+  json = Json(), json["idx"][8] = 9;
+  ExpectRefused(json, "09.png: cannot be opened");
+}
+
+TEST_F(StackFits, CamerasThatStandNowhereAreRefused) {
+  StackSynthesis synthesis;
+  synthesis.lights = DomeLights(8, 60 * (kPi / 180));
+  WriteStack(MakeHills(8, MapLobe::kGgx).maps, synthesis, folder_ / "s");
+  const std::string manifest(FileBytes(folder_ / "s/stack.toml").bytes());
+  const auto refused = [&](const std::string& more, const std::string& words) {
+    WriteFileAtomically(folder_ / "s/stack.toml", manifest + more);
+    try {
+      OpenStack(folder_ / "s", {});
+      ADD_FAILURE() << more;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(words)) << more;
+    }
+  };
+  const std::string plane = "[plane]\nwidth_mm = 100\n";
+  refused("[camera]\nposition = [0, 0, 500]\n", "cameras at a position need [plane] with width_mm");
+  refused("[camera]\nposition = [0, 0]\n" + plane, "position must be three numbers, mm");
+  refused("[camera]\nposition = [0, 0, -1]\n" + plane, "camera 1 at z = -1 mm is not in front of the picture");
+  refused("[camera]\nplace = [0, 0, 1]\n" + plane, "unknown key 'place' in [camera]");
+  refused("[camera]\nkind = \"position\"\n" + plane, "needs position = [x, y, z] or file");
+  refused("[camera]\nkind = \"orthographic\"\nposition = [0, 0, 9]\n" + plane,
+          "an orthographic camera has no position");
+  WriteFileAtomically(folder_ / "s/c.txt", "0 0 500\n0 0 500\n");
+  refused("[camera]\nfile = \"c.txt\"\n" + plane, "2 places of cameras for 8 images");
 }
 
 TEST(TexelFitter, EllipsoidsOverAHeldNormalAreRecovered) {

@@ -121,6 +121,7 @@ int DescribeStack(const std::filesystem::path& path, const StackOptions& options
                                              {"calibrated", stack.calibrated},
                                              {"light_theta_deg", {low, high}},
                                              {"lights", stack.near ? "near" : "distant"},
+                                             {"cameras", stack.cameras.size()},
                                              {"saturated", saturated},
                                              {"dark", dark},
                                              {"negative", negative},
@@ -138,6 +139,10 @@ int DescribeStack(const std::filesystem::path& path, const StackOptions& options
                       stack.near ? fmt::format("near: {:.4g} mm from the middle of a picture of {:.4g} mm (mean)",
                                                stack.near->reference_mm, stack.width_mm)
                                  : "distant");
+  if (!stack.cameras.empty()) {
+    text += fmt::format("  camera       at {}, z {:.4g} mm\n",
+                        stack.cameras.size() == 1 ? "one place" : "a place for each photograph", stack.cameras[0].z);
+  }
   text += fmt::format("  unit         {}\n",
                       stack.calibrated ? "f_r cos_theta_i, 1/sr" : "one unknown factor of f_r cos_theta_i");
   text += fmt::format(

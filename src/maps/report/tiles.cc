@@ -98,6 +98,9 @@ std::vector<Tile> ReportTiles(const Maps& maps, const Stack& stack, const MapsPa
                    "green: all determined; blue: no lobe by evidence; purple: something not determined; orange: at a "
                    "bound; red: not converged; black: too few values"});
   tiles.push_back(Scalar(maps, MapPart::kQuality, "rms", "Residual", "of the texel's 90th percentile", true));
+  if (PlaneIndex(maps.planes, MapPart::kQuality, "cluster") < maps.planes.size()) {
+    tiles.push_back(Scalar(maps, MapPart::kQuality, "cluster", "Cluster", "texels that share numbers", false));
+  }
   for (const bool fitted : {false, true}) {
     const RelitLight* worst = WorstLight(page.lights, fitted);
     if (worst != nullptr) AddPair(maps, stack, page, *worst, &tiles);

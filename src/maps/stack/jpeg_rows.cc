@@ -11,6 +11,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/maps/stack/image_rows.h"
+#include "lobefit/maps/stack/open_file.h"
 
 namespace lobefit {
 namespace {
@@ -64,46 +65,47 @@ int OrientationOf(const jpeg_marker_struct* marker) {
   return 1;
 }
 
+struct JpegReader {
+  jpeg_decompress_struct jpeg = {};
+  JpegReader() = default;
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
+  ~JpegReader() { jpeg_destroy_decompress(&jpeg); }
+};
+
 class JpegRows : public ImageRows {
  public:
-  explicit JpegRows(const std::filesystem::path& path) : name_(PrintableName(path)) {
-    file_ = std::fopen(path.c_str(), "rb");
-    if (file_ == nullptr) throw InputError(name_ + ": cannot be opened: " + std::strerror(errno));
-    try {
-      ReadHead();
-    } catch (...) {
-      Close();
-      throw;
-    }
+  explicit JpegRows(const std::filesystem::path& path) : name_(PrintableName(path)), file_(OpenToRead(path)) {
+    ReadHead();
   }
-  ~JpegRows() override { Close(); }
 
   void Next(float* values) override {
     JSAMPROW row = row_.data();
-    jpeg_read_scanlines(&jpeg_, &row, 1);
+    jpeg_read_scanlines(&reader_.jpeg, &row, 1);
     for (std::size_t i = 0; i < row_.size(); ++i) values[i] = static_cast<float>(row_[i]) / 255.0F;
   }
 
  private:
   void ReadHead() {
-    jpeg_.err = jpeg_std_error(&errors_);
+    jpeg_decompress_struct& jpeg = reader_.jpeg;
+    jpeg.err = jpeg_std_error(&errors_);
     // An exception leaves libjpeg's C frames, which hold nothing.
     errors_.error_exit = [](j_common_ptr jpeg) { FailBroken(jpeg); };
     errors_.emit_message = OnJpegMessage;
-    jpeg_.client_data = &name_;
-    jpeg_create_decompress(&jpeg_);
+    jpeg.client_data = &name_;
+    jpeg_create_decompress(&jpeg);
     constexpr unsigned kMostExif = 4096;  // the orientation stands at its beginning
-    jpeg_save_markers(&jpeg_, JPEG_APP0 + 1, kMostExif);
-    jpeg_stdio_src(&jpeg_, file_);
-    jpeg_read_header(&jpeg_, TRUE);
-    if (jpeg_has_multiple_scans(&jpeg_) != 0) {
+    jpeg_save_markers(&jpeg, JPEG_APP0 + 1, kMostExif);
+    jpeg_stdio_src(&jpeg, file_.get());
+    jpeg_read_header(&jpeg, TRUE);
+    if (jpeg_has_multiple_scans(&jpeg) != 0) {
       throw InputError(
           name_ + ": a progressive JPEG cannot be read row by row; jpegtran writes it as a baseline one without loss");
     }
-    if (jpeg_.jpeg_color_space == JCS_CMYK || jpeg_.jpeg_color_space == JCS_YCCK) {
+    if (jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK) {
       throw InputError(name_ + ": a JPEG in CMYK; images of a stack are gray or RGB: convert it");
     }
-    const int orientation = OrientationOf(jpeg_.marker_list);
+    const int orientation = OrientationOf(jpeg.marker_list);
     if (orientation != 1) {
       throw InputError(fmt::format(
           "{}: its EXIF data turn the picture (orientation {}), which lights do not follow; turn the pixels (exiftran "
@@ -111,21 +113,17 @@ class JpegRows : public ImageRows {
           "or, where the lights are those of the pixels as stored, remove the mark (exiftool -Orientation=)",
           name_, orientation));
     }
-    channels_ = jpeg_.jpeg_color_space == JCS_GRAYSCALE ? 1 : 3;
-    jpeg_.out_color_space = channels_ == 1 ? JCS_GRAYSCALE : JCS_RGB;
-    jpeg_start_decompress(&jpeg_);
-    width_ = jpeg_.output_width, height_ = jpeg_.output_height, bits_ = 8;
+    channels_ = jpeg.jpeg_color_space == JCS_GRAYSCALE ? 1 : 3;
+    jpeg.out_color_space = channels_ == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_start_decompress(&jpeg);
+    width_ = jpeg.output_width, height_ = jpeg.output_height, bits_ = 8;
     row_.resize(width_ * channels_);
-  }
-  void Close() {
-    jpeg_destroy_decompress(&jpeg_);
-    std::fclose(file_);
   }
 
   std::string name_;
-  std::FILE* file_ = nullptr;
-  jpeg_decompress_struct jpeg_ = {};
-  jpeg_error_mgr errors_ = {};
+  OpenFile file_;
+  jpeg_error_mgr errors_ = {};  // outlives the reader, which points to it
+  JpegReader reader_;
   std::vector<JSAMPLE> row_;
 };
 

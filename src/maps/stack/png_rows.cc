@@ -1,5 +1,3 @@
-#include <cstdio>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -9,6 +7,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/maps/stack/image_rows.h"
+#include "lobefit/maps/stack/open_file.h"
 
 namespace lobefit {
 namespace {
@@ -22,22 +21,25 @@ constexpr png_uint_32 kMostEdge = 65536;
 }
 void OnReadWarning(png_structp, png_const_charp) {}
 
+struct PngReader {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  PngReader() = default;
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+  ~PngReader() {
+    if (png != nullptr) png_destroy_read_struct(&png, &info, nullptr);
+  }
+};
+
 class PngRows : public ImageRows {
  public:
-  explicit PngRows(const std::filesystem::path& path) : name_(PrintableName(path)) {
-    file_ = std::fopen(path.c_str(), "rb");
-    if (file_ == nullptr) throw InputError(name_ + ": cannot be opened: " + std::strerror(errno));
-    try {
-      ReadHead();
-    } catch (...) {
-      Close();
-      throw;
-    }
+  explicit PngRows(const std::filesystem::path& path) : name_(PrintableName(path)), file_(OpenToRead(path)) {
+    ReadHead();
   }
-  ~PngRows() override { Close(); }
 
   void Next(float* values) override {
-    png_read_row(png_, row_.data(), nullptr);
+    png_read_row(reader_.png, row_.data(), nullptr);
     const std::size_t count = width_ * channels_;
     if (bits_ <= 8) {
       for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<float>(row_[i]) / 255.0F;
@@ -50,35 +52,31 @@ class PngRows : public ImageRows {
 
  private:
   void ReadHead() {
-    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &name_, OnReadError, OnReadWarning);
-    info_ = png_ == nullptr ? nullptr : png_create_info_struct(png_);
-    if (info_ == nullptr) throw InputError(name_ + ": out of memory");
-    png_set_user_limits(png_, kMostEdge, kMostEdge);
-    png_init_io(png_, file_);
-    png_read_info(png_, info_);
-    if (png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE) {
+    const png_structp png = reader_.png =
+        png_create_read_struct(PNG_LIBPNG_VER_STRING, &name_, OnReadError, OnReadWarning);
+    const png_infop info = reader_.info = png == nullptr ? nullptr : png_create_info_struct(png);
+    if (info == nullptr) throw InputError(name_ + ": out of memory");
+    png_set_user_limits(png, kMostEdge, kMostEdge);
+    png_init_io(png, file_.get());
+    png_read_info(png, info);
+    if (pngget_interlace_type(png, info) != PNG_INTERLACE_NONE) {
       throw InputError(name_ + ": an interlaced PNG cannot be read row by row; write it without interlacing");
     }
-    width_ = png_get_image_width(png_, info_), height_ = png_get_image_height(png_, info_);
-    bits_ = png_get_bit_depth(png_, info_);
-    const int color = png_get_color_type(png_, info_);
-    if (color == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png_), bits_ = 8;
-    if (color == PNG_COLOR_TYPE_GRAY && bits_ < 8) png_set_expand_gray_1_2_4_to_8(png_);
-    if ((color & PNG_COLOR_MASK_ALPHA) != 0) png_set_strip_alpha(png_);
+    width_ = png_get_image_width(png, info), height_ = png_get_image_height(png, info);
+    bits_ = png_get_bit_depth(png, info);
+    const int color = png_get_color_type(png, info);
+    if (color == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png), bits_ = 8;
+    if (color == PNG_COLOR_TYPE_GRAY && bits_ < 8) png_set_expand_gray_1_2_4_to_8(png);
+    if ((color & PNG_COLOR_MASK_ALPHA) != 0) png_set_strip_alpha(png);
     channels_ = (color & PNG_COLOR_MASK_COLOR) != 0 ? 3 : 1;
-    png_read_update_info(png_, info_);
-    row_.resize(png_get_rowbytes(png_, info_));
+    png_read_update_info(png, info);
+    row_.resize(pngget_rowbytes(png, info));
     if (row_.size() < width_ * channels_ * (bits_ > 8 ? 2 : 1)) throw InputError(name_ + ": an unusual PNG");
-  }
-  void Close() {
-    if (png_ != nullptr) png_destroy_read_struct(&png_, &info_, nullptr);
-    std::fclose(file_);
   }
 
   std::string name_;
-  std::FILE* file_ = nullptr;
-  png_structp png_ = nullptr;
-  png_infop info_ = nullptr;
+  OpenFile file_;
+  PngReader reader_;
   std::vector<png_byte> row_;
 };
 

@@ -85,6 +85,12 @@ ExportOutcome ExportMaps(const Maps& maps, const MapsRecord& record, const std::
     throw InputError(
         fmt::format("{}: {}; targets that can: {}", options.material_file, RefusalText(outcome.refusals), Join(can)));
   }
+  if (maps.lobe == MapLobe::kEllipsoid) {
+    throw InputError(
+        options.material_file +
+        ": lobes that lean over their normals; no renderer's textures hold that: fit ggx-anisotropic-maps, whose "
+        "normal is free, to the same stack");
+  }
   const MapNumbers numbers(maps, record.calibrated, more.white);
   outcome.remarks = Remarks(numbers);
   MakeFolder(options.folder);
