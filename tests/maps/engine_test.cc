@@ -97,8 +97,8 @@ TEST_P(EachLobe, DerivativesAreThoseOfTheCost) {
 }
 
 // The matrix and the errors against their definitions, with the model's derivatives by differences: sum w J^T J + bend
-// (J^T r)(J^T r)^T, and what the solution moves by, to first order, where one light after the other is left out, half way to where its own
-// pull stays in its residual.
+// (J^T r)(J^T r)^T, and what the solution moves by, to first order, where one light after the other is left out, kJackknife
+// of the way from what its residual as it is says.
 class EachModel : public testing::TestWithParam<std::tuple<MapLobe, int>> {};
 INSTANTIATE_TEST_SUITE_P(Models, EachModel,
                          testing::Combine(testing::Values(MapLobe::kNone, MapLobe::kGgx, MapLobe::kGgxAnisotropic),
@@ -181,7 +181,7 @@ TEST_P(EachModel, MatrixAndErrorsAreThoseOfTheirDefinitions) {
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(model.Unknowns(), model.Unknowns());
   for (std::size_t l = 0; l < directions.size(); ++l) {
     const Eigen::VectorXd without = (whole - parts[l]).fullPivLu().solve(slopes[l]);
-    const Eigen::VectorXd moved = (without + whole.fullPivLu().solve(slopes[l])) / 2;
+    const Eigen::VectorXd moved = kJackknife * without + (1 - kJackknife) * whole.fullPivLu().solve(slopes[l]);
     covariance += moved * moved.transpose();
   }
   for (std::size_t j = 0; j < unknowns; ++j) {

@@ -98,8 +98,8 @@ void AddGram(const double* factor, const double* const* rows, int count, std::si
   }
 }
 
-// With W = w 1 + bend r r^T, J the channels' rows and A^-1 the inverse: moved = A^-1 J^T (x + w r) / 2, (1 - W J A^-1 J^T)
-// x = w r.
+// With W = w 1 + bend r r^T, J the channels' rows and A^-1 the inverse: moved = A^-1 J^T (p x + (1 - p) w r), p =
+// kJackknife, (1 - W J A^-1 J^T) x = w r.
 template <int kShape, int kChannels>
 LOBEFIT_INLINE void MovesOfTerms(const LightTerms terms, const RowArrays arrays, const MapMatrix inverse,
                                  double* const* moved) {
@@ -165,7 +165,7 @@ LOBEFIT_INLINE void MovesOfTerms(const LightTerms terms, const RowArrays arrays,
       for (int i = j + 1; i < kChannels; ++i) x[j] -= M[j][i] * x[i];
       x[j] /= M[j][j];
     }
-    for (int c = 0; c < kChannels; ++c) x[c] = 0.5 * (x[c] + w * r[c]);
+    for (int c = 0; c < kChannels; ++c) x[c] = kJackknife * x[c] + (1 - kJackknife) * (w * r[c]);
     for (int i = 0; i < kUnknowns; ++i) {
       Lanes sum = {};
       for (int c = 0; c < kChannels; ++c) sum += V[c][i] * x[c];

@@ -90,7 +90,7 @@ class JpegRows : public ImageRows {
     jpeg_decompress_struct& jpeg = reader_.jpeg;
     jpeg.err = jpeg_std_error(&errors_);
     // An exception leaves libjpeg's C frames, which hold nothing.
-    errors_.error_exit = [](j_common_ptr jpeg) { FailBroken(jpeg); };
+    errors_.error_exit = [](j_common_ptr broken) { FailBroken(broken); };
     errors_.emit_message = OnJpegMessage;
     jpeg.client_data = &name_;
     jpeg_create_decompress(&jpeg);

@@ -59,7 +59,7 @@ class PngRows : public ImageRows {
     png_set_user_limits(png, kMostEdge, kMostEdge);
     png_init_io(png, file_.get());
     png_read_info(png, info);
-    if (pngget_interlace_type(png, info) != PNG_INTERLACE_NONE) {
+    if (png_get_interlace_type(png, info) != PNG_INTERLACE_NONE) {
       throw InputError(name_ + ": an interlaced PNG cannot be read row by row; write it without interlacing");
     }
     width_ = png_get_image_width(png, info), height_ = png_get_image_height(png, info);
@@ -70,7 +70,7 @@ class PngRows : public ImageRows {
     if ((color & PNG_COLOR_MASK_ALPHA) != 0) png_set_strip_alpha(png);
     channels_ = (color & PNG_COLOR_MASK_COLOR) != 0 ? 3 : 1;
     png_read_update_info(png, info);
-    row_.resize(pngget_rowbytes(png, info));
+    row_.resize(png_get_rowbytes(png, info));
     if (row_.size() < width_ * channels_ * (bits_ > 8 ? 2 : 1)) throw InputError(name_ + ": an unusual PNG");
   }
 
