@@ -140,7 +140,7 @@ TEST_F(MapsVerb, BadInputEndsWithItsCodeAndCure) {
     EXPECT_THAT(result.err, HasSubstr(words)) << command;
   };
   refused("lobefit maps nowhere", 3, "nowhere: is not there");
-  refused("mkdir empty && lobefit maps empty", 3, "a stack.toml, DiLiGenT's filenames.txt, a light file (.lp, .dome)");
+  refused("mkdir empty && lobefit maps empty", 3, "a stack.toml, DiLiGenT's filenames.txt, a light file (.lp, .dome, MaterialGAN's");
   refused("lobefit maps s --recipe ggx-map", 3, "did you mean 'ggx-maps'?");
   refused("lobefit maps s --rows 5:3", 2, "A:B with 0 <= A < B <= 8 is expected");
   refused("lobefit maps s --leave-out 13", 2, "numbers of lights from 1 to 12");
