@@ -118,7 +118,9 @@ std::vector<Trial> TrialStore::Read(std::size_t count) const {
   return trials;
 }
 
-void TrialStore::Append(std::size_t index, const Trial& trial) { journal_.Append(ToLine(key_, index, trial), true); }
+void TrialStore::Append(std::size_t index, const Trial& trial) { journal_.Commit(ToLine(key_, index, trial), {}); }
+
+void TrialStore::Close() { journal_.Close(); }
 
 std::string ToLine(const std::string& key, std::size_t index, const Trial& trial) {
   const Json line = {{"key", key},

@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
 #include "lobefit/io/csv/reader.h"
 #include "lobefit/io/read.h"
+#include "lobefit/io/series.h"
 #include "lobefit/io/text/decoded_file.h"
 
 namespace lobefit {
@@ -91,7 +93,7 @@ class Gatherer {
 
   void Append(Task task) {
     for (const auto& [name, words] : common_) task.options.emplace(name, words);
-    task.bytes = SizeOf(task.path);
+    for (const std::string& file : FilesToFit(task)) task.bytes += SizeOf(ParseFileSpec(file).path);
     gathered_.list.tasks.push_back(std::move(task));
   }
 
@@ -170,7 +172,7 @@ class Gatherer {
     std::unordered_map<std::string, const Task*> ids, files;
     for (const Task& task : gathered_.list.tasks) {
       CheckId(task);
-      const auto [same_file, new_file] = files.emplace(task.path.string(), &task);
+      const auto [same_file, new_file] = files.emplace(Join(FilesToFit(task), "\n"), &task);
       if (!new_file && same_file->second->options == task.options) {
         throw InputError(
             fmt::format("{}: '{}' is listed already ({}); remove one, or give them different options and "
@@ -216,7 +218,11 @@ void SetSettings(const std::function<std::string(const OptionWords&)>& settings_
         throw Error(error.exit_code(), fmt::format("{}: {}", task.place, error.what()));
       }
     }
-    task.settings = found->second;
+    std::string keys;
+    for (const std::string& file : FilesToFit(task))
+      keys += Join(ParseFileSpec(file).keys, ",") + "\n";
+    const bool stated = keys.find_first_not_of('\n') != std::string::npos;
+    task.settings = stated ? Sha256Hex(found->second + "\n" + keys) : found->second;
   }
 }
 

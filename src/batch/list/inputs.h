@@ -28,8 +28,8 @@ struct Inputs {
 Inputs GatherInputs(const std::vector<std::string>& inputs, const OptionWords& common, const ManifestNames& names,
                     const std::filesystem::path& out, const WorkList& known);
 
-// Sets Task::settings of each by `settings_of`, which throws UsageError and InputError for options that are not valid;
-// their message gets the task's place. Called once for equal options.
+// Sets Task::settings of each by `settings_of` and keys stated for its files. The function throws UsageError and
+// InputError for options that are not valid; their message gets the task's place. Called once for equal options.
 void SetSettings(const std::function<std::string(const OptionWords&)>& settings_of, WorkList* list);
 
 }  // namespace lobefit
