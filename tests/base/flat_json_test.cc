@@ -30,17 +30,39 @@ TEST(FlatJson, GivesMembersInOrder) {
 
 TEST(FlatJson, TakesEscapesBack) {
   EXPECT_THAT(Members(R"({"a\"b":"\\\/\b\f\n\r\t,\u0041\u00e4\u20AC\ud83d\ude00end","c":"{\"d\":1}"})"),
-              ElementsAre(Pair("a\"b", "\\/\b\f\n\r\t,A\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80"
-                                       "end"),
+              ElementsAre(Pair("a\"b",
+                               "\\/\b\f\n\r\t,A\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80"
+                               "end"),
                           Pair("c", "{\"d\":1}")));
 }
 
 TEST(FlatJson, RefusesWhatIsNoFlatObject) {
-  for (const char* text :
-       {"", "3", "[1]", "{", R"({"a":{}})", R"({"a":[1]})", R"({"a":1)", R"({"a":1}})", R"({"a":1,})", R"({"a"})",
-        R"({"a":01})", R"({"a":1.})", R"({"a":1e})", R"({"a":-})", R"({"a":+1})", R"({"a":nan})", R"({"a":nul})",
-        R"({"a":"x)", R"({"a":"\x"})", R"({"a":"\u12"})", R"({"a":"\ud83d"})", R"({"a":"\ud83dx"})",
-        R"({"a":"\ude00"})", "{\"a\":\"\n\"}", R"({"a":"\)", R"({a:1})"}) {
+  for (const char* text : {"",
+                           "3",
+                           "[1]",
+                           "{",
+                           R"({"a":{}})",
+                           R"({"a":[1]})",
+                           R"({"a":1)",
+                           R"({"a":1}})",
+                           R"({"a":1,})",
+                           R"({"a"})",
+                           R"({"a":01})",
+                           R"({"a":1.})",
+                           R"({"a":1e})",
+                           R"({"a":-})",
+                           R"({"a":+1})",
+                           R"({"a":nan})",
+                           R"({"a":nul})",
+                           R"({"a":"x)",
+                           R"({"a":"\x"})",
+                           R"({"a":"\u12"})",
+                           R"({"a":"\ud83d"})",
+                           R"({"a":"\ud83dx"})",
+                           R"({"a":"\ude00"})",
+                           "{\"a\":\"\n\"}",
+                           R"({"a":"\)",
+                           R"({a:1})"}) {
     EXPECT_THROW(Members(text), InputError) << text;
   }
 }

@@ -57,7 +57,6 @@ class PlanTest : public ProgramTest {
           ran.push_back(done.id);
           rows_[done.id] = done.row;
           last_[done.id] = done;
-
         });
     return ran;
   }

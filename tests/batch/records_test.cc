@@ -98,6 +98,54 @@ TEST_F(RecordsTest, ALineWithoutFilesIsThereAtOnce) {
   EXPECT_EQ(ReadRecords(folder_, 1).done.size(), 1U);
 }
 
+TEST_F(RecordsTest, APictureBelongsToTheNextLine) {
+  DoneRecord with = Done("a", TaskStatus::kFitted, 1), without = Done("b", TaskStatus::kFitted, 1);
+  with.picture = "iVBOR+/=";
+  with.picture_is_measured = true;
+  EXPECT_EQ(DoneFromLine(ToLine(with)).picture, with.picture);
+  EXPECT_EQ(DoneFromLine(ToLine(with)).row, with.row);
+  {
+    Journal journal(Segments());
+    journal.Commit(ToLine(with), {});
+    journal.Commit(ToLine(without), {});
+  }
+  const std::string whole = ReadWholeFile(OnlySegment());
+  for (const bool cut : {false, true}) {
+    // A picture that lost its end is none, and no line of another task.
+    if (cut) WriteWholeFile(OnlySegment(), std::string(whole).replace(whole.find("+/=\"}"), 5, ""));
+    const Records records = ReadRecords(folder_, 1);
+    RowReader reader(records);
+    ASSERT_EQ(records.done.size(), 2U);
+    EXPECT_EQ(reader.ReadPicture(records.done[0]), cut ? "" : "iVBOR+/=");
+    EXPECT_EQ(reader.ReadPicture(records.done[1]), "");
+    EXPECT_EQ(reader.Read(records.done[0]), with.row);
+    EXPECT_EQ(records.segments[0].lines_lost, cut ? 1U : 0U);
+    EXPECT_TRUE(cut || records.done[0].picture_is_measured);
+  }
+}
+
+TEST_F(RecordsTest, ReadsLongSegmentsInPieces) {
+  std::filesystem::create_directories(Segments());
+  std::string text;
+  constexpr int kCount = 12000;  // 9 MB
+  for (int i = 0; i < kCount; ++i) {
+    DoneRecord done = Done(std::to_string(i), TaskStatus::kFitted, i);
+    done.row =
+        "{\"x\":" + std::to_string(i) + ",\"y\":\"" + std::string(static_cast<std::size_t>(i % 997), 'y') + "\"}";
+    text += ToLine(done) + "\n";
+  }
+  WriteWholeFile(Segments() / "long.jsonl", text);
+  const Records records = ReadRecords(folder_, 3);
+  ASSERT_EQ(records.done.size(), static_cast<std::size_t>(kCount));
+  EXPECT_EQ(records.segments[0].lines_lost, 0U);
+  RowReader reader(records);
+  for (int i = 0; i < kCount; i += 7) {
+    const DoneRecord& done = records.done[static_cast<std::size_t>(i)];
+    EXPECT_EQ(done.id, std::to_string(i));
+    EXPECT_TRUE(reader.Read(done).starts_with("{\"x\":" + done.id + ","));
+  }
+}
+
 TEST_F(RecordsTest, WritesNoFileWithoutALine) {
   { const Journal journal(Segments()); }
   EXPECT_FALSE(std::filesystem::exists(Segments()));

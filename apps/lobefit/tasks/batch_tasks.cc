@@ -4,6 +4,7 @@
 
 #include "options/report_formats.h"
 
+#include "lobefit/base/base64.h"
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
@@ -75,10 +76,8 @@ Outcome FitWork::operator()(const Task& task, int threads) const {
     report.threads = threads;
     WriteReports(formats_, fitted.material, fitted.measurement, ResultPath(out_, task.id, ".report.png"), report);
   }
+  const SpherePicture picture = DrawSpheres(fitted.material, fitted.measurement);
   FileGroup files;
-  if (const SpherePicture picture = DrawSpheres(fitted.material, fitted.measurement); !picture.png.empty())
-    files.Add(ResultPath(out_, task.id, picture.measured ? ".spheres.png" : ".sphere.png"), picture.png);
-  // Last, so that where the document is everything is.
   const std::string json = ToJson(fitted.material);
   files.Add(document, json);
   return {doubts.empty() ? TaskStatus::kFitted : TaskStatus::kDoubtful,
@@ -87,7 +86,9 @@ Outcome FitWork::operator()(const Task& task, int threads) const {
           ResultRow(fitted.material),
           json.size(),
           fitted.measurement.sha256,
-          std::move(files)};
+          std::move(files),
+          Base64(picture.png),
+          picture.measured};
 }
 
 }  // namespace lobefit

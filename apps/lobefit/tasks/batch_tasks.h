@@ -32,7 +32,7 @@ class TaskOptions {
 
 enum class BatchReports { kNone, kDoubtful, kAll };
 
-// Fits a task and draws its report; picture and, last, document are of the outcome.
+// Fits a task and draws its report; document and picture are of the outcome.
 class FitWork {
  public:
   // `options` must outlive the object.

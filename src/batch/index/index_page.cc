@@ -11,8 +11,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/base64.h"
-#include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 #include "lobefit/batch/index/assets.h"
@@ -73,20 +71,16 @@ std::vector<const ResultTable::Row*> ChooseRows(const ResultTable& table, std::s
   return rows;
 }
 
-Json Pictures(const std::vector<const ResultTable::Row*>& rows, const std::filesystem::path& out, std::size_t most) {
+Json Pictures(const ResultTable& table, const std::vector<const ResultTable::Row*>& rows, std::size_t most) {
   Json pictures = Json::array();
+  RowReader reader(*table.records);
   std::size_t taken = 0;
   for (const ResultTable::Row* row : rows) {
     pictures.push_back(nullptr);
-    if (row->done->document_bytes == 0 || taken == most) continue;
-    for (const bool measured : {true, false}) {
-      const std::filesystem::path path = ResultPath(out, row->task->id, measured ? ".spheres.png" : ".sphere.png");
-      std::error_code error;
-      if (!std::filesystem::exists(path, error)) continue;
-      pictures.back() = {{"measured", measured}, {"png", Base64(FileBytes(path).bytes())}};
-      ++taken;
-      break;
-    }
+    const std::string_view picture = taken < most ? reader.ReadPicture(*row->done) : "";
+    if (picture.empty()) continue;
+    pictures.back() = {{"measured", row->done->picture_is_measured}, {"png", picture}};
+    ++taken;
   }
   return pictures;
 }
@@ -186,7 +180,7 @@ Json DataOf(const ResultTable& table, const std::filesystem::path& out, const In
   data["missing"] = missing;
   data["reports"] = reports;
   data["most_pictures"] = options.most_pictures;
-  data["pictures"] = Pictures(rows, out, options.most_pictures);
+  data["pictures"] = Pictures(table, rows, options.most_pictures);
   return data;
 }
 

@@ -219,8 +219,7 @@ void SetSettings(const std::function<std::string(const OptionWords&)>& settings_
       }
     }
     std::string keys;
-    for (const std::string& file : FilesToFit(task))
-      keys += Join(ParseFileSpec(file).keys, ",") + "\n";
+    for (const std::string& file : FilesToFit(task)) keys += Join(ParseFileSpec(file).keys, ",") + "\n";
     const bool stated = keys.find_first_not_of('\n') != std::string::npos;
     task.settings = stated ? Sha256Hex(found->second + "\n" + keys) : found->second;
   }

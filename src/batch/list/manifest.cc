@@ -135,8 +135,7 @@ WorkList ParseManifest(std::string_view text, const std::filesystem::path& path,
     const bool has_id = header.id != Header::kNone && !fields[header.id].empty();
     task.id = has_id ? fields[header.id] : IdOf(task.members.empty() ? task.file : SeriesId(task.file));
     if (task.id.empty()) {
-      throw InputError(fmt::format("{}: the names in '{}' have no beginning in common to name the results by; give the "
-                                   "row an id",
+      throw InputError(fmt::format("{}: '{}' holds no beginning that the results can be named by; give the row an id",
                                    place, Excerpt(task.file, 80)));
     }
     list.tasks.push_back(task);

@@ -85,10 +85,10 @@ std::vector<std::string> ListSeries(const std::string& cell, const Path& folder,
     }
     const std::vector<Path> files = is_folder ? Measurements(spec.path, any_rows) : Matches(part, folder);
     if (files.empty()) {
-      throw InputError(fmt::format("'{}' {}; a row names a file, or a folder, pattern or list of files that are one "
-                                   "measurement",
-                                   Excerpt(part, 200),
-                                   is_folder ? "is a folder without measurement files" : "matches no file"));
+      throw InputError(
+          fmt::format("'{}' {}; a row names a file, or a folder, pattern or list of files that are one "
+                      "measurement",
+                      Excerpt(part, 200), is_folder ? "is a folder without measurement files" : "matches no file"));
     }
     const std::string keys = spec.keys.empty() ? "" : ":" + Join(spec.keys, ",");
     for (const Path& file : files) members.push_back(Listed(file, folder, relative) + keys);

@@ -25,8 +25,8 @@ std::string Line(const Json& json) { return json.dump(-1, ' ', false, Json::erro
 std::string ToText(const WorkList& list) {
   std::string text = Line({{"format", kFormat}, {"version", Version()}, {"extra_columns", list.extra_columns}});
   for (const Task& task : list.tasks) {
-    Json json = {{"id", task.id},           {"file", task.file},         {"path", task.path.string()},
-                 {"bytes", task.bytes},     {"options", task.options},   {"settings", task.settings},
+    Json json = {{"id", task.id},       {"file", task.file},       {"path", task.path.string()},
+                 {"bytes", task.bytes}, {"options", task.options}, {"settings", task.settings},
                  {"extra", task.extra}};
     if (!task.members.empty()) json["members"] = task.members;
     text += Line(json);
@@ -62,7 +62,8 @@ void CheckContains(const WorkList& list, const WorkList& stored, const std::file
           "{}: '{}' is listed with {}, but {} holds it with {}{}; choose another --out, or the same options",
           found->second->place, Excerpt(task.id, 200), OptionText(found->second->options), out.string(),
           OptionText(task.options),
-          found->second->options == task.options ? ", where its recipe's text or keys of its files were others" : std::string()));
+          found->second->options == task.options ? ", where its recipe's text or keys of its files were others"
+                                                 : std::string()));
     }
   }
 }

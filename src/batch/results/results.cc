@@ -149,8 +149,7 @@ ResultTable MakeTable(const WorkList& list, const Records& records, int threads)
   return table;
 }
 
-RowTexts::RowTexts(const ResultTable& table)
-    : table_(table), reader_(*table.records), texts_(table.columns.size()) {
+RowTexts::RowTexts(const ResultTable& table) : table_(table), reader_(*table.records), texts_(table.columns.size()) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) places_.emplace(table.columns[i], i);
 }
 
@@ -207,8 +206,7 @@ void WriteJsonLines(const ResultTable& table, int threads, std::ostream& out) {
     RowReader reader(*table.records);
     ForBlock(table, block, [&](const ResultTable::Row& row) {
       nlohmann::ordered_json json = {{"id", row.task->id}, {"file", row.task->file}};
-      for (std::size_t i = 0; i < row.task->extra.size(); ++i)
-        json[table.list->extra_columns[i]] = row.task->extra[i];
+      for (std::size_t i = 0; i < row.task->extra.size(); ++i) json[table.list->extra_columns[i]] = row.task->extra[i];
       json["status"] = NameOf(row.done->status);
       json["message"] = row.done->message;
       json["sha256"] = row.done->sha256;
@@ -250,7 +248,8 @@ void WriteRuns(const ResultTable& table, std::ostream& out) {
     const Segment& segment = table.records->segments[run.segment];
     line.clear();
     if (run.done == nullptr) {
-      AppendLine({std::string(run.id), "died", "no", UtcText(run.begun), "", "", "", segment.host, segment.name}, &line);
+      AppendLine({std::string(run.id), "died", "no", UtcText(run.begun), "", "", "", segment.host, segment.name},
+                 &line);
     } else {
       AppendLine({std::string(run.id), NameOf(run.done->status), counts.contains(run.done) ? "yes" : "no",
                   UtcText(run.begun), fmt::format("{:.6f}", run.done->seconds), std::to_string(run.done->threads),

@@ -18,7 +18,8 @@ namespace {
 
 class SegmentFile {
  public:
-  explicit SegmentFile(const std::filesystem::path& path) : path_(path), number_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+  explicit SegmentFile(const std::filesystem::path& path)
+      : path_(path), number_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
     if (number_ < 0) Fail();
   }
   ~SegmentFile() { close(number_); }
@@ -75,12 +76,14 @@ SegmentLines ParseLines(const std::filesystem::path& path, std::uint64_t begin, 
     if (line.empty()) continue;
     const std::size_t known = parsed.done.size();
     try {
-      ParseLine(line, &parsed);
+      ParseLine(line, static_cast<std::uint64_t>(line.data() - rest.data()), &parsed);
     } catch (const std::exception&) {
       ++parsed.lines_lost;
     }
-    if (parsed.done.size() > known && parsed.done.back().row_bytes > 0)
-      parsed.done.back().row_offset += offset + static_cast<std::uint64_t>(line.data() - rest.data());
+    // Places count from the beginning of the piece.
+    if (parsed.done.size() == known) continue;
+    parsed.done.back().row_offset += offset;
+    parsed.done.back().picture_offset += offset;
   }
   return parsed;
 }
@@ -116,9 +119,8 @@ Records ReadRecords(const std::filesystem::path& out, int threads) {
     records.segments.push_back({path.stem().string(), "", false, path, 0});
   }
   std::vector<SegmentLines> parsed(pieces.size());
-  ParallelFor(pieces.size(), threads, [&](std::size_t i) {
-    parsed[i] = ParseLines(paths[pieces[i].segment], pieces[i].begin, pieces[i].end);
-  });
+  ParallelFor(pieces.size(), threads,
+              [&](std::size_t i) { parsed[i] = ParseLines(paths[pieces[i].segment], pieces[i].begin, pieces[i].end); });
 
   std::vector<std::unordered_map<std::string, StartRecord>> open(paths.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -153,8 +155,15 @@ RowReader::~RowReader() {
 }
 
 std::string_view RowReader::Read(const DoneRecord& done) {
+  return done.row_bytes == 0 ? done.row : ReadPlace(done, done.row_offset, done.row_bytes);
+}
+
+std::string_view RowReader::ReadPicture(const DoneRecord& done) {
+  return done.picture_bytes == 0 ? done.picture : ReadPlace(done, done.picture_offset, done.picture_bytes);
+}
+
+std::string_view RowReader::ReadPlace(const DoneRecord& done, std::uint64_t offset, std::uint64_t bytes) {
   constexpr std::size_t kMostOpen = 64;
-  if (!done.row.empty() || done.row_bytes == 0) return done.row;
   const std::filesystem::path& path = records_.segments[done.segment].path;
   auto descriptor = descriptors_.find(done.segment);
   if (descriptor == descriptors_.end()) {
@@ -162,15 +171,14 @@ std::string_view RowReader::Read(const DoneRecord& done) {
       for (const auto& [segment, number] : descriptors_) close(number);
       descriptors_.clear();
     }
-    descriptor = descriptors_.emplace(done.segment, open(path.c_str(), O_RDONLY | O_CLOEXEC)).first;
+    const int number = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (number < 0) throw InputError(path.string() + ": cannot be read: " + std::strerror(errno));
+    descriptor = descriptors_.emplace(done.segment, number).first;
   }
-  row_.resize(done.row_bytes);
-  const ssize_t count =
-      pread(descriptor->second, row_.data(), row_.size(), static_cast<off_t>(done.row_offset));
-  if (count != static_cast<ssize_t>(row_.size())) {
+  text_.resize(bytes);
+  if (pread(descriptor->second, text_.data(), bytes, static_cast<off_t>(offset)) != static_cast<ssize_t>(bytes))
     throw InputError(path.string() + ": changed while it was read; start the same command again");
-  }
-  return row_;
+  return text_;
 }
 
 std::unordered_map<std::string, const DoneRecord*> LatestDone(

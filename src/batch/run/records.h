@@ -39,8 +39,11 @@ struct DoneRecord {
   // The columns of the result as a JSON object; empty where there is no document. Of records that were read it stays in
   // the segment, and RowReader gives it.
   std::string row;
-  std::size_t segment = 0;  // index into Records::segments
-  std::uint64_t row_offset = 0, row_bytes = 0;
+  // The spheres of the overview as PNG in base64, of which the same holds; empty where there are none.
+  std::string picture;
+  bool picture_is_measured = false;  // the measured sphere stands left of the fitted one
+  std::size_t segment = 0;           // index into Records::segments
+  std::uint64_t row_offset = 0, row_bytes = 0, picture_offset = 0, picture_bytes = 0;
 };
 
 // A task that was begun.
@@ -76,23 +79,27 @@ class RowReader {
   RowReader(const RowReader&) = delete;
   RowReader& operator=(const RowReader&) = delete;
 
-  // DoneRecord::row; valid until the next call. Throws InputError where the segment does not hold it any more.
+  // DoneRecord::row and picture; valid until the next call. Throw InputError where the segment does not hold it any more.
   std::string_view Read(const DoneRecord& done);
+  std::string_view ReadPicture(const DoneRecord& done);
 
  private:
+  std::string_view ReadPlace(const DoneRecord& done, std::uint64_t offset, std::uint64_t bytes);
+
   const Records& records_;
   std::unordered_map<std::size_t, int> descriptors_;  // by segment
-  std::string row_;
+  std::string text_;
 };
 
 // The lines of a segment.
 std::string ToLine(const StartRecord& start);
+// Two lines where there is a picture, which comes first.
 std::string ToLine(const DoneRecord& done);
 // Of a task whose process outlived it: written at once, while what it gave is on its way to the disk or cannot be
 // written.
 std::string EndedLine(const std::string& id);
-// The record of one line, with its row. Throws an exception for a line that is not whole.
-DoneRecord DoneFromLine(std::string_view line);
+// The record of ToLine, with its row and picture. Throws an exception for one that is not whole.
+DoneRecord DoneFromLine(std::string_view text);
 
 // Seconds since 1970.
 double Now();

@@ -71,9 +71,13 @@ class Runner {
   void Crashed(const Task& task) {
     DoneRecord record = Begin(task, 1);
     Commit(task, &record,
-           {TaskStatus::kCrashed, kExitOther,
+           {TaskStatus::kCrashed,
+            kExitOther,
             "the process that fitted it died twice, perhaps for want of memory; --retry-failed tries again, by itself",
-            "", 0, "", {}});
+            "",
+            0,
+            "",
+            {}});
   }
 
   void Close() { journal_.Close(); }
@@ -117,7 +121,9 @@ class Runner {
     record->exit_code = outcome.exit_code;
     record->message = WithoutFolder(outcome.message, task);
     record->document_bytes = outcome.document_bytes;
-    record->row = outcome.row;
+    record->row = std::move(outcome.row);
+    record->picture = std::move(outcome.picture);
+    record->picture_is_measured = outcome.picture_is_measured;
     record->sha256 = outcome.sha256.empty() ? ContentSha256(task) : outcome.sha256;
     record->key = TaskKey(record->sha256, task.settings);
     record->peak_mb = PeakMegabytes(RUSAGE_SELF);
@@ -165,6 +171,8 @@ class Runner {
       record.message = outcome.message;
       record.document_bytes = outcome.document_bytes;
       record.row = outcome.row;
+      record.picture = outcome.picture;
+      record.picture_is_measured = outcome.picture_is_measured;
       record.sha256 = outcome.sha256;
       text = "R" + ToLine(record);
     } catch (const std::exception& error) {
@@ -183,8 +191,15 @@ class Runner {
     if (said.starts_with("W")) throw OutputError(said.substr(1));
     if (said.starts_with("R") && WIFEXITED(status) && WEXITSTATUS(status) == 0) {
       const DoneRecord record = DoneFromLine(std::string_view(said).substr(1));
-      return {record.status,           record.exit_code,      record.message,
-              std::string(record.row), record.document_bytes, record.sha256, {}};
+      return {record.status,
+              record.exit_code,
+              record.message,
+              record.row,
+              record.document_bytes,
+              record.sha256,
+              {},
+              record.picture,
+              record.picture_is_measured};
     }
     const std::string how = WIFSIGNALED(status)
                                 ? fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))

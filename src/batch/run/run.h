@@ -24,8 +24,10 @@ struct Outcome {
   std::string message;
   std::string row;  // columns of the result as a JSON object; empty without a document
   std::uint64_t document_bytes = 0;
-  std::string sha256;  // of the file as it was read; empty where it was not
-  FileGroup files;     // its document and what belongs to it
+  std::string sha256;        // of the file as it was read; empty where it was not
+  FileGroup files;           // its document
+  std::string picture = {};  // DoneRecord::picture
+  bool picture_is_measured = false;
 };
 
 // Fits one task on so many threads. A failure of the file is an outcome or an exception;

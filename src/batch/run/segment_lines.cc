@@ -21,6 +21,8 @@ constexpr std::array<const char*, 4> kStatusNames = {"fitted", "doubtful", "fail
 // Before the object of a result's columns, which is the last member of its line. A quote within a string has a
 // backslash before it, so that this is not found in one.
 constexpr std::string_view kRow = ",\"row\":{";
+// The line of a picture, between whose parts only base64 stands.
+constexpr std::string_view kMeasured = "{\"measured\":\"", kFitted = "{\"fitted\":\"", kPictureEnd = "\"}";
 
 template <typename T>
 T Integer(std::string_view text) {
@@ -121,7 +123,16 @@ std::string_view RowOf(std::string_view line) {
 
 std::string NameOf(TaskStatus status) { return kStatusNames[static_cast<std::size_t>(status)]; }
 
-void ParseLine(std::string_view line, SegmentLines* parsed) {
+void ParseLine(std::string_view line, std::uint64_t offset, SegmentLines* parsed) {
+  const std::uint64_t picture_bytes = std::exchange(parsed->picture_bytes, 0);
+  if (line.starts_with(kMeasured) || line.starts_with(kFitted)) {
+    parsed->picture_is_measured = line.starts_with(kMeasured);
+    const std::size_t begin = (parsed->picture_is_measured ? kMeasured : kFitted).size();
+    if (!line.ends_with(kPictureEnd) || line.size() < begin + kPictureEnd.size()) throw InputError("cut short");
+    parsed->picture_offset = offset + begin;
+    parsed->picture_bytes = line.size() - begin - kPictureEnd.size();
+    return;
+  }
   const std::string_view row = RowOf(line);
   const std::string head =
       row.empty() ? std::string(line) : std::string(line.substr(0, line.size() - row.size() - kRow.size())) + "}";
@@ -131,7 +142,10 @@ void ParseLine(std::string_view line, SegmentLines* parsed) {
     DoneRecord done;
     ParseDone(&json, &done);
     done.row_bytes = row.size();
-    done.row_offset = row.empty() ? 0 : static_cast<std::uint64_t>(row.data() - line.data());
+    done.row_offset = row.empty() ? 0 : offset + static_cast<std::uint64_t>(row.data() - line.data());
+    done.picture_offset = parsed->picture_offset;
+    done.picture_bytes = picture_bytes;
+    done.picture_is_measured = parsed->picture_is_measured;
     parsed->ended.push_back(done.id);
     parsed->done.push_back(std::move(done));
     return;
@@ -169,7 +183,14 @@ std::string ToLine(const DoneRecord& done) {
                      {"seconds", done.seconds},
                      {"peak_mb", done.peak_mb},
                      {"threads", done.threads}};
-  std::string line = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string line;
+  if (!done.picture.empty()) {
+    line += done.picture_is_measured ? kMeasured : kFitted;
+    line += done.picture;
+    line += kPictureEnd;
+    line += '\n';
+  }
+  line += json.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (done.row.empty()) return line;
   line.pop_back();
   line += kRow.substr(0, kRow.size() - 1);
@@ -177,11 +198,14 @@ std::string ToLine(const DoneRecord& done) {
   return line + "}";
 }
 
-DoneRecord DoneFromLine(std::string_view line) {
+DoneRecord DoneFromLine(std::string_view text) {
   SegmentLines parsed;
-  ParseLine(line, &parsed);
+  LineReader lines(text);
+  std::string_view line;
+  while (lines.Next(&line)) ParseLine(line, static_cast<std::uint64_t>(line.data() - text.data()), &parsed);
   DoneRecord done = std::move(parsed.done.at(0));
-  done.row = line.substr(done.row_offset, done.row_bytes);
+  done.row = text.substr(done.row_offset, std::exchange(done.row_bytes, 0));
+  done.picture = text.substr(done.picture_offset, std::exchange(done.picture_bytes, 0));
   return done;
 }
 
