@@ -49,6 +49,19 @@ class SegmentFile {
   const int number_;
 };
 
+// Most tasks end in the piece in which they began: only the others need be remembered.
+void ForgetEnded(SegmentLines* lines) {
+  std::unordered_map<std::string, StartRecord> open_tasks;
+  for (StartRecord& start : lines->started) open_tasks.insert_or_assign(start.id, std::move(start));
+  std::vector<std::string> ended_elsewhere;
+  for (std::string& id : lines->ended) {
+    if (open_tasks.erase(id) == 0) ended_elsewhere.push_back(std::move(id));
+  }
+  lines->started.clear();
+  for (auto& [id, start] : open_tasks) lines->started.push_back(std::move(start));
+  lines->ended = std::move(ended_elsewhere);
+}
+
 // The lines of a segment that begin in [begin, end).
 SegmentLines ParseLines(const std::filesystem::path& path, std::uint64_t begin, std::uint64_t end) {
   constexpr std::uint64_t kStep = 1 << 16;
@@ -85,6 +98,7 @@ SegmentLines ParseLines(const std::filesystem::path& path, std::uint64_t begin, 
     parsed.done.back().row_offset += offset;
     parsed.done.back().picture_offset += offset;
   }
+  ForgetEnded(&parsed);
   return parsed;
 }
 
