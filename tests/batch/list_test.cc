@@ -178,6 +178,16 @@ TEST_F(InputsTest, RefusesIdsThatAreNoRelativePath) {
   EXPECT_THAT([&] { Gather({"list.csv"}); }, Throws<InputError>());
 }
 
+TEST_F(InputsTest, RefusesAnIdInTheWayOfAnothersResults) {
+  Put("x.csv", kCsv);
+  Put("y.csv", kCsv);
+  Put("list.csv", "file,id\nx.csv,a.material.json/b/c\ny.csv,a\n");
+  EXPECT_THAT([&] { Gather({"list.csv"}); },
+              ThrowsMessage<InputError>(testing::AllOf(HasSubstr("line 2"), HasSubstr("'a' ("), HasSubstr("line 3"))));
+  Put("list.csv", "file,id\nx.csv,a/b\ny.csv,a\n");
+  EXPECT_EQ(Gather({"list.csv"}).list.tasks.size(), 2U);
+}
+
 TEST_F(InputsTest, RefusesNamesThatAreNotThereAndEmptyFolders) {
   EXPECT_THAT([&] { Gather({"none"}); }, ThrowsMessage<InputError>(HasSubstr("is not there")));
   std::filesystem::create_directories(folder_ / "empty");

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <sstream>
 
@@ -120,8 +121,18 @@ TEST_F(BatchVerb, ASeriesIsOneTask) {
   EXPECT_EQ(alone["source"]["sha256"], batch["source"]["sha256"]);
   // Any of the files decides; the same ones give the same.
   EXPECT_THAT(Shell("lobefit batch list.csv --recipe ggx --out out --dry-run").out, HasSubstr("2 done, 0 to do"));
+  EXPECT_EQ(Shell("echo blue | lobefit batch - --recipe ggx --out listed").exit_code, 0);
+  EXPECT_EQ(Table("listed/results.csv").at("blue").at("sha256"), batch["source"]["sha256"]);
+  EXPECT_THAT(Shell("printf 'a\\0b\\0' | lobefit batch - --out none").err, HasSubstr("line 1: holds a zero byte"));
+  EXPECT_THAT(Shell("mkdir empty; echo empty | lobefit batch - --out none").err,
+              HasSubstr("line 1: 'empty' is a folder without measurement files"));
   std::filesystem::remove(folder_ / "blue" / ("i" + parts.begin()->first + ".csv"));
   EXPECT_THAT(Shell("lobefit batch list.csv --recipe ggx --out out --dry-run").out, HasSubstr("1 done, 1 to do"));
+  WriteWholeFile(folder_ / "blue" / "notes.txt", "hello");
+  const std::string rest = "blue/i" + std::next(parts.begin())->first + ".csv";
+  WriteWholeFile(folder_ / rest, ReadWholeFile(folder_ / rest) + "\n");
+  EXPECT_THAT(Shell("echo blue | lobefit batch - --recipe ggx --out listed --dry-run").out,
+              HasSubstr("0 done, 1 to do"));
 }
 
 TEST_F(BatchVerb, RefusesBadInputBeforeAnythingRuns) {
