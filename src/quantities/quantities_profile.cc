@@ -42,7 +42,7 @@ void AddCoefficients(Quantity* q, std::size_t count) {
   }
 }
 
-SlopeDistribution SlopesOf(const double* in) { return {SlopeKind::kGgx, in[0], in[1], in[2], in[3], in[4]}; }
+SlopeDistribution SlopesOf(const double* in) { return {Family::kGgx, in[0], in[1], in[2], in[3], in[4]}; }
 
 Profile ProfileOf(const SplinePointer& spline, const double* q) { return {spline, {q, q + spline->size()}}; }
 
