@@ -67,7 +67,7 @@ TEST(WeakFurnace, SmithIsExactOnTheSphere) {
     EXPECT_NEAR(no_fresnel, 1, 1e-9);
     const double W = WeakFurnaceSphere(distribution, {}, wo);
     EXPECT_LE(W, 1);
-    EXPECT_EQ(WeakFurnaceSphere(distribution, {Masking::kSmithSeparable, false}, wo), 1);
+    EXPECT_EQ(WeakFurnaceSphere(distribution, {Masking::kSmithUnclamped}, wo), 1);
     const double up = WeakFurnaceHemisphere(distribution, {}, wo),
                  diffuse_up = WeakFurnaceDiffuseHemisphere(distribution, {}, wo);
     EXPECT_GT(up, 0);
