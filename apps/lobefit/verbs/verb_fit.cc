@@ -7,6 +7,7 @@
 
 #include "options/report_formats.h"
 #include "tasks/fit_file.h"
+#include "text/output.h"
 #include "text/summary.h"
 #include "text/terminal_plot.h"
 #include "verbs/verb.h"
@@ -35,7 +36,7 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   const bool of_material = IsOneMaterial(verb.files);
   // A table of lobes must not overwrite the material that it was sampled from.
   const std::string own = of_material ? stem.substr(0, stem.find('.')) + ".sel" : stem;
-  const std::string name = ResultName(verb.name.empty() ? own : verb.name, verb.files[0]);
+  const std::string name = ResultName(verb.name, own);
   const std::filesystem::path folder = verb.out;
   MakeFolder(folder);
   const std::filesystem::path document = folder / (name + ".material.json"), picture = folder / (name + ".report.png");
