@@ -349,6 +349,7 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
     curved.lobes = std::move(lobes);
     ladder.Try(curved, NameOfParts(curved), base);
   };
+  with_curve({{shape}}, &plain);
   with_curve({{profile}}, with_profile);
   with_curve({{shape}, {Ndf::kGgx}}, with_two);
   with_curve({{student}, {student}}, with_two);

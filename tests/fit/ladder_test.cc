@@ -67,7 +67,7 @@ TEST(Ladder, WhatTheTruthNeedsIsFound) {
   } cases[] = {{Gray(Ndf::kGgxAnisotropic, 0.3, 0.1), "anisotropic"},
                {student, "student"},
                {two, "+ggx"},
-               {curve, "curve"},
+               {curve, "ggx+curve"},
                {retro, "ggx+retro"},
                {coat, "ggx+coat"}};
   for (const auto& [truth, part] : cases) {
