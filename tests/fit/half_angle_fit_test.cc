@@ -10,6 +10,7 @@
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/measurement/incidence.h"
 #include "lobefit/synthesis/instrument.h"
 
 namespace lobefit {
@@ -79,8 +80,9 @@ double Relative(const Material& material, const SyntheticCase& truth) {
 TEST(HalfAngleKernel, ColumnsEqualDifferences) {
   for (const Ndf ndf : {Ndf::kEllipsoid, Ndf::kBeckmannOffCenter}) {
     for (const bool crooked : {false, true}) {
+      if (crooked && ndf != Ndf::kEllipsoid) continue;
       const SyntheticCase truth = OneLobe(ndf, 0.2, 0.15, 1, 2, 20, {0.7}, {0.05});
-      Measurement measurement = Seen(truth, {}, 0.05, 1, Grid(25));
+      Measurement measurement = Seen(truth, {}, 0.05, 1, Grid(40));
       Recipe recipe = RecipeFor(truth);
       recipe.instrument.source = DegreesToRadians(1.5);
       recipe.instrument.source_prior = DegreesToRadians(0.2);
@@ -218,7 +220,7 @@ TEST(RectangleFit, SaysWhyItRefuses) {
 TEST(ApertureFit, DiscsAtTheHorizonAreFitted) {
   const SyntheticCase truth = OneLobe(Ndf::kEllipsoid, 0.3, 0.2, 0.5, -0.5, 20, {0.7}, {0.05});
   const Aperture aperture = {0, DegreesToRadians(4)};
-  Measurement measurement = Seen(truth, aperture, 0, 1, Grid(6, 89));
+  Measurement measurement = Seen(truth, aperture, 0, 1, Grid(8, 89));
   Recipe recipe = RecipeFor(truth);
   recipe.theta_max = kPi / 2;
   recipe.instrument.detector = aperture.detector;

@@ -61,7 +61,7 @@ TEST(MaterialJson, ReadsAProfileBack) {
   material.model = profile.model;
   material.parameters.clear();
   for (const std::vector<double>& values : profile.values) {
-    material.parameters.push_back({values, values, values, values, true, false});
+    material.parameters.push_back({values, values, values, values, {}, true, false});
   }
   material.covariance_names.clear();
   material.covariance = material.covariance_clustered = {};

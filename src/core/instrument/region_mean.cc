@@ -11,9 +11,9 @@ namespace lobefit {
 namespace {
 
 // Corners where an edge's image in the slope plane bends.
-constexpr int kPiecesOfSide = 16, kPiecesOfHorizon = 16, kDiscCorners = 64;
+constexpr int kPiecesOfSide = 8, kPiecesOfHorizon = 12, kDiscCorners = 48;
 // Points between a region's middle and its rim: two of each ring.
-constexpr int kRings = 6;
+constexpr int kRings = 4;
 constexpr double kGauss = 0.5773502691896258;
 
 Vec3 Between(const Vec3& a, const Vec3& b, double share) { return Normalized((1 - share) * a + share * b); }
@@ -102,12 +102,50 @@ Vec3 MiddleOf(const std::vector<Vec3>& corners, const Vec3& wi, const SlopeCoord
   return left || right ? mirror : Normalized(sum);
 }
 
-// Sums over points of a region, with their derivatives by the slope coordinates.
+// Points between the middle of a convex region and its rim, denser towards the middle, with the area that each stands
+// for; those above the horizon.
+class RegionPoints {
+ public:
+  RegionPoints(const Vec3& wi, const std::vector<Vec3>& corners, const Vec3& middle) {
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Vec3 a = corners[k] - middle, b = corners[(k + 1) % corners.size()] - middle, edge = 0.5 * (a + b);
+      const double twice_area = Norm(Cross(a, b));
+      for (int ring = 0; ring < kRings; ++ring) {
+        const double low = ring * ring / double{kRings * kRings};
+        const double high = (ring + 1) * (ring + 1) / double{kRings * kRings};
+        for (const double node : {-kGauss, kGauss}) {
+          const double t = 0.5 * (low + high) + 0.5 * (high - low) * node;
+          Add(wi, Normalized(middle + t * edge), 0.5 * (high - low) * t * twice_area);
+        }
+      }
+    }
+  }
+  std::size_t size() const { return area_.size(); }
+  double area(std::size_t k) const { return area_[k]; }
+  double cosine(std::size_t k) const { return at_[5][k]; }
+  DirectionArrays pairs() const {
+    return {at_[0].data(), at_[1].data(), at_[2].data(), at_[3].data(), at_[4].data(), at_[5].data(), size()};
+  }
+  VectorArrays normals() const { return {at_[6].data(), at_[7].data(), at_[8].data(), size()}; }
+
+ private:
+  void Add(const Vec3& wi, const Vec3& wo, double area) {
+    if (!(wo.z > 0)) return;
+    const Vec3 h = Normalized(wi + wo);
+    const double all[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, h.x, h.y, h.z};
+    for (std::size_t f = 0; f < at_.size(); ++f) at_[f].push_back(all[f]);
+    area_.push_back(area);
+  }
+  std::array<std::vector<double>, 9> at_;  // wi, wo, their half vector
+  std::vector<double> area_;
+};
+
+// Sums over points of a region, with their derivatives by the slope coordinates, `stride` apart; null: none.
 struct Sum {
   double value = 0, gradient[5] = {};
-  void Add(double weight, double f, const double* df) {
+  void Add(double weight, double f, const double* df, std::size_t stride) {
     value += weight * f;
-    for (int j = 0; j < 5; ++j) gradient[j] += weight * df[j];
+    for (std::size_t j = 0; df != nullptr && j < 5; ++j) gradient[j] += weight * df[j * stride];
   }
 };
 
@@ -158,32 +196,20 @@ double GgxRegionMean(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& sha
   }
   double by_integral[5];
   const double integral = SlopeIntegral(wi, corners, shape, derivatives ? by_integral : nullptr);
-  const Vec3 centre = MiddleOf(corners, wi, shape);
+  const RegionPoints points(wi, corners, MiddleOf(corners, wi, shape));
+  const std::size_t n = points.size();
+  std::vector<double> specular(n), cos_d(n), D(n), dspecular(derivatives ? 5 * n : 0), dD(derivatives ? 5 * n : 0);
+  GgxLobe(points.pairs(), shape, masking, specular.data(), cos_d.data(), derivatives ? dspecular.data() : nullptr);
+  GgxD(points.normals(), shape, D.data(), derivatives ? dD.data() : nullptr);
   // D cos_h / (4 i.h), whose integral is that of the slopes; D G2 / 4; the same times the Fresnel argument.
   Sum slopes, term, moment;
-  const auto add = [&](const Vec3& w, double area) {
-    if (!(w.z > 0)) return;
-    const Vec3 h = Normalized(wi + w);
-    double cos_d, df[5] = {}, dD[5] = {};
-    const double specular = GgxLobe(wi, w, shape, masking, &cos_d, derivatives ? df : nullptr);
-    const double D = GgxD(h, shape, derivatives ? dD : nullptr);
-    const double x = 1 - cos_d, q = kind == FresnelArgument::kCosine ? cos_d : x * x * (x * x) * x;
-    slopes.Add(area * h.z / (4 * cos_d), D, dD);
-    term.Add(area * w.z, specular, df);
-    moment.Add(area * w.z * q, specular, df);
-  };
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const Vec3 a = corners[k] - centre, b = corners[(k + 1) % corners.size()] - centre, edge = 0.5 * (a + b);
-    const double twice_area = Norm(Cross(a, b));
-    for (int ring = 0; ring < kRings; ++ring) {
-      // Denser towards the middle.
-      const double low = ring * ring / double{kRings * kRings},
-                   high = (ring + 1) * (ring + 1) / double{kRings * kRings};
-      for (const double node : {-kGauss, kGauss}) {
-        const double t = 0.5 * (low + high) + 0.5 * (high - low) * node;
-        add(Normalized(centre + t * edge), 0.5 * (high - low) * t * twice_area);
-      }
-    }
+  for (std::size_t k = 0; k < n; ++k) {
+    const double x = 1 - cos_d[k], q = kind == FresnelArgument::kCosine ? cos_d[k] : x * x * (x * x) * x;
+    const double area = points.area(k), flux = area * points.cosine(k);
+    const double *df = derivatives ? &dspecular[k] : nullptr, *d = derivatives ? &dD[k] : nullptr;
+    slopes.Add(area * points.normals().z[k] / (4 * cos_d[k]), D[k], d, n);
+    term.Add(flux, specular[k], df, n);
+    moment.Add(flux * q, specular[k], df, n);
   }
   if (term.value > 0) *argument = moment.value / term.value;
   // Nothing of the lobe is seen.

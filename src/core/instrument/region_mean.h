@@ -20,7 +20,7 @@ struct DirectionRegion {
   std::vector<std::array<double, 3>> corners;
   double cosine = 0;  // integral of w'.w over it
 };
-// A disc, as a polygon of 64 corners of the same area.
+// A disc, as a polygon of 48 corners of the same area.
 DirectionRegion DiscRegion(double half_angle);
 // A flat rectangle that faces the sample, with half angles along the meridian and across it; at w = z, along x and y.
 DirectionRegion RectangleRegion(double along, double across);
@@ -32,8 +32,8 @@ double ConstantMean(const Vec3& w, const DirectionRegion& region);
 // Flux mean of D G2 / (4 cos_i cos_o) over the region about wo, light at the point wi: the integral of the slope
 // distribution over the region's image times a D-weighted mean of the rest over points of it, denser where the lobe is
 // high. What is below the horizon reflects nothing. By reciprocity the mean over a region about the light is that with wi
-// and wo exchanged. With w the region's half width over the lobe's, half_angle / (2 alpha cos_d): error below 3e-4 of the
-// value for w up to 10 on whole regions, on cut ones below 2e-3 for w up to 5 (3e-2 at 20, where both directions graze).
+// and wo exchanged. With w the region's half width over the lobe's, half_angle / (2 alpha cos_d): error below 1e-3 of the
+// value for w up to 10 on whole regions, 3e-3 for w up to 5 on cut ones, and a tenth at 20, where both directions graze.
 // argument and gradients as GgxMeanLobe; gradients null together. The points follow the lobe, which gradients leave out:
 // they are off by the error of the value over alpha. wi.z, wo.z > 0.
 double GgxRegionMean(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Masking masking,

@@ -127,7 +127,7 @@ TEST(ReferenceTable, GainsOfTheKernel) {
   samples.Append({0, 0, 1}, {0.6, 0, 0.8}, readings, 0);
   Recipe recipe = DefaultRecipe(Model{}, "black");
   recipe.metric = Metric::kLog;
-  const Incidences incidences = {{0}, {{0, 0, 1}}};
+  const Incidences incidences = {{Vec3{0, 0, 1}}, {0}};
   ThreadPool pool(1);
   for (std::size_t row = 0; row < table.size(); ++row) {
     KernelModel model;
