@@ -177,7 +177,9 @@ TEST(HalfAngleFit, IsRefusedWhereNoneIsKnown) {
 TEST(RectangleFit, RecoversWhatADiscDoesNot) {
   const SyntheticCase truth = Narrow();
   const Aperture aperture = {0, DegreesToRadians(0.5), ApertureMean::kFlux, DegreesToRadians(3)};
-  Measurement measurement = Seen(truth, aperture, 0.03, 3, Grid()), again = measurement;
+  GoniometerLayout layout = Grid();
+  layout.azimuths.resize(1);
+  Measurement measurement = Seen(truth, aperture, 0.03, 3, layout), again = measurement;
   Recipe recipe = RecipeFor(truth);
   // A disc of the same solid angle.
   recipe.instrument.detector = std::sqrt(4 * aperture.detector * aperture.across / kPi);
@@ -220,7 +222,9 @@ TEST(RectangleFit, SaysWhyItRefuses) {
 TEST(ApertureFit, DiscsAtTheHorizonAreFitted) {
   const SyntheticCase truth = OneLobe(Ndf::kEllipsoid, 0.3, 0.2, 0.5, -0.5, 20, {0.7}, {0.05});
   const Aperture aperture = {0, DegreesToRadians(4)};
-  Measurement measurement = Seen(truth, aperture, 0, 1, Grid(8, 89));
+  GoniometerLayout layout = Grid(8, 89);
+  layout.azimuths.resize(1);
+  Measurement measurement = Seen(truth, aperture, 0, 1, layout);
   Recipe recipe = RecipeFor(truth);
   recipe.theta_max = kPi / 2;
   recipe.instrument.detector = aperture.detector;
@@ -262,7 +266,7 @@ TEST(InstrumentFit, ValuesWithoutNoiseComeBack) {
                {"rectangle", rectangle, {}, 0},
                {"offset", offset, {}, 0.01}};
   for (const auto& c : cases) {
-    Measurement measurement = ReadByModel(truth, c.recipe, Grid(6), c.angles, c.offset);
+    Measurement measurement = ReadByModel(truth, c.recipe, Grid(8), c.angles, c.offset);
     const Material material = Fit(c.recipe, {}, &measurement);
     EXPECT_LT(Relative(material, truth), 1e-6) << c.name;
   }

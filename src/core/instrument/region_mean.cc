@@ -11,9 +11,9 @@ namespace lobefit {
 namespace {
 
 // Corners where an edge's image in the slope plane bends.
-constexpr int kPiecesOfSide = 8, kPiecesOfHorizon = 12, kDiscCorners = 48;
+constexpr int kPiecesOfSide = 8, kPiecesOfHorizon = 8, kDiscCorners = 32;
 // Points between a region's middle and its rim: two of each ring.
-constexpr int kRings = 4;
+constexpr int kRings = 6;
 constexpr double kGauss = 0.5773502691896258;
 
 Vec3 Between(const Vec3& a, const Vec3& b, double share) { return Normalized((1 - share) * a + share * b); }
