@@ -84,7 +84,7 @@ void MeansOverRegion(const DirectionArrays& directions, const Lobe& lobe, const 
 }  // namespace
 
 bool HasMeanInClosedForm(const Lobe& lobe) {
-  return FamilyOf(lobe.ndf) == NdfFamily::kGgx && lobe.masking <= Masking::kSmithHeight;
+  return FamilyOf(lobe.ndf) == Family::kGgx && lobe.masking <= Masking::kSmithHeight;
 }
 
 LobeMeanRule MakeLobeMeanRule(const Lobe& lobe, const Aperture& aperture, double alpha, double cos_d) {

@@ -119,7 +119,7 @@ class Layout {
   void AddMean(std::size_t lobe, Shape* shape);
   // Parameters of the profile at `u`, and where asked d(parameter) / d(coordinate) of the free ones.
   std::vector<double> ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes = nullptr) const;
-  bool IsGamma(std::size_t lobe) const { return FamilyOf(recipe_.model.lobes[lobe].ndf) == NdfFamily::kStudent; }
+  bool IsGamma(std::size_t lobe) const { return FamilyOf(recipe_.model.lobes[lobe].ndf) == Family::kStudent; }
   void AddAngles();
   void AddHalfAngles();
   // Sets the lobes' rules at `u` and those of the half angles' columns, where there are such.
