@@ -203,7 +203,7 @@ bool IsClamped(const Problem& problem, const Vec3& moved, const Vec3& fixed, boo
   if (!(moved.z > 0 && fixed.z > 0)) return false;
   BrdfFactors factors;
   EllipsoidConductorBrdf(problem.ellipsoid, problem.index, detector ? moved : fixed, detector ? fixed : moved,
-                         G1Kind::kClamped, nullptr, &factors);
+                         Masking::kSmithSeparable, nullptr, &factors);
   return detector ? factors.clamped_o : factors.clamped_i;
 }
 

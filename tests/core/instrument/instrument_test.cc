@@ -143,7 +143,7 @@ TEST(QuadratureMeans, DerivativesHoldAcrossTheEndOfTheClamp) {
       const double psi = k * kPi / 12, c = std::cos(0.06), s = std::sin(0.06);
       BrdfFactors factors;
       EllipsoidConductorBrdf(ellipsoid(), index, c * wo + s * std::cos(psi) * along + s * std::sin(psi) * across, wi,
-                             G1Kind::kClamped, nullptr, &factors);
+                             Masking::kSmithSeparable, nullptr, &factors);
       clamped += factors.clamped_o ? 1 : 0;
     }
     if (clamped < 4 || clamped > 20) continue;
