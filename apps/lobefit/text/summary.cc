@@ -140,14 +140,21 @@ std::string Summary(const Material& material) {
   }
   if (material.instrument) {
     const InstrumentUsed& i = *material.instrument;
-    text += fmt::format("Instrument: half angles {:.4g} (source) and {:.4g} degrees (detector), {} mean\n",
-                        RadiansToDegrees(i.source), RadiansToDegrees(i.detector), i.mean);
+    const std::string across = i.across > 0 ? fmt::format(" x {:.4g}", RadiansToDegrees(i.across)) : std::string();
+    text += fmt::format("Instrument: half angles {:.4g} (source) and {:.4g}{} degrees (detector), {} mean\n",
+                        RadiansToDegrees(i.source), RadiansToDegrees(i.detector), across, i.mean);
     if (!i.gains.empty()) {
       const auto [low, high] =
           std::minmax_element(i.gains.begin(), i.gains.end(),
                               [](const IncidenceGain& a, const IncidenceGain& b) { return a.gain < b.gain; });
       text += fmt::format("  gains of {} incidences {:.4g} to {:.4g}, standard deviation {:.2g}{}\n", i.gains.size(),
                           low->gain, high->gain, i.drift->sd, i.drift->estimated ? " (estimated)" : " (given)");
+    }
+    for (const InstrumentHalfAngle& half_angle : i.half_angles) {
+      text += fmt::format("  {} {:.3f} +- {:.3f} degrees, given {:.3g} +- {:.2g}{}\n", half_angle.name,
+                          RadiansToDegrees(half_angle.value), RadiansToDegrees(half_angle.standard_error),
+                          RadiansToDegrees(half_angle.given), RadiansToDegrees(half_angle.prior),
+                          half_angle.determined ? "" : " (not determined)");
     }
     for (const InstrumentAngle& angle : i.alignment) {
       text += fmt::format("  {:<6} {:.3f} +- {:.3f} degrees\n", angle.name, RadiansToDegrees(angle.value),
