@@ -266,7 +266,7 @@ TEST(Rgl, TheMeanIsTakenWhereTheHalfVectorIsTheNormal) {
   EXPECT_EQ(at_normal, 6U);
   EXPECT_GE(m.set_aside[SetAsideReason::kDuplicate], 6U * 15);
   // Nothing speaks against a table without the sample's azimuth, however the rows of that column differ.
-  Convert({&m, TabulatedBrdf(spread.path(), m), m.channels, m.isotropic}, FindWriteFormat("merl", "x"), {},
+  Convert({&m, TabulatedBrdf(spread.path(), m).brdf, m.channels, m.isotropic}, FindWriteFormat("merl", "x"), {},
           table.path());
   EXPECT_EQ(ReadMeasurement(table.path()).format, "merl");
 }
