@@ -30,7 +30,7 @@ struct ValueName {
   std::string_view name;
   std::optional<ValueKind> kind;
 };
-constexpr std::array<ValueName, 57> kValues = {{
+constexpr std::array<ValueName, 60> kValues = {{
     {"value", {}},
     {"values", {}},
     {"val", {}},
@@ -69,6 +69,9 @@ constexpr std::array<ValueName, 57> kValues = {{
     {"bsdf_cosine_corrected", ValueKind::kBrdfCosO},
     {"cos_corrected_brdf", ValueKind::kBrdfCosO},
     {"dsf", ValueKind::kBrdfCosO},
+    {"ars", ValueKind::kBrdfCosO},
+    {"angle_resolved_scatter", ValueKind::kBrdfCosO},
+    {"angle_resolved_scattering", ValueKind::kBrdfCosO},
     {"f_cos_i", ValueKind::kBrdfCosI},
     {"brdf_cos_i", ValueKind::kBrdfCosI},
     {"brdf_cos_theta_i", ValueKind::kBrdfCosI},
