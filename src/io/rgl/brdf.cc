@@ -39,6 +39,16 @@ RglBrdf::RglBrdf(const std::filesystem::path& path, std::string_view bytes) {
   for (std::size_t slice = 0; slice < tables_.slices(); ++slice) {
     warps_.emplace_back(&tables_.vndf.values[slice * size], tables_.vndf.width(), tables_.vndf.height());
   }
+  light_z_.reserve(tables_.slices() * tables_.nodes());
+  for (std::size_t slice = 0; slice < tables_.slices(); ++slice) {
+    // Of many files the last polar angle is the horizon.
+    const double viewer_z = std::cos(static_cast<double>(tables_.theta[slice % tables_.theta.size()]));
+    for (std::size_t node = 0; node < tables_.nodes(); ++node) {
+      const std::size_t width = tables_.spectra.width();
+      const double z = LightOf(slice, node % width, node / width).z;
+      light_z_.push_back(viewer_z > kRglHorizon && z > kRglHorizon ? static_cast<float>(z) : 0.0F);
+    }
+  }
 }
 
 RglBrdf::Place RglBrdf::Find(const Vec3& wi, const Vec3& wo) const {
@@ -95,9 +105,11 @@ void RglBrdf::Evaluate(const Vec3& wi, const Vec3& wo, double* values) const {
   }
 }
 
-Vec3 RglBrdf::LightOf(std::size_t slice, const Vec2& point) const {
+Vec3 RglBrdf::LightOf(std::size_t slice, std::size_t column, std::size_t row) const {
   double pdf = 0;
-  const Vec2 u = warps_[slice].Sample(point, &pdf);
+  const Vec2 u = warps_[slice].Sample({static_cast<double>(column) / static_cast<double>(tables_.spectra.width() - 1),
+                                       static_cast<double>(row) / static_cast<double>(tables_.spectra.height() - 1)},
+                                      &pdf);
   const double theta = static_cast<double>(tables_.theta[slice % tables_.theta.size()]),
                phi = static_cast<double>(tables_.phi[slice / tables_.theta.size()]);
   return Reflect(FromSpherical(theta, phi), FromSpherical(RglTheta(u.x), RglPhi(u.y) + (isotropic() ? phi : 0.0)));
@@ -109,21 +121,18 @@ bool RglBrdf::Covers(const Vec3& wi, const Vec3& wo) const {
                most = static_cast<double>(tables_.theta.back());
   if (theta < least - kSameAngle || theta > most + kSameAngle) return false;
   const Place place = Find(wi, wo);
-  // Of many files the last polar angle is the horizon, where nothing was measured.
+  const std::size_t width = tables_.spectra.width(), height = tables_.spectra.height();
+  const auto column = std::min(static_cast<std::size_t>(place.point.x * static_cast<double>(width - 1)), width - 2),
+             row = std::min(static_cast<std::size_t>(place.point.y * static_cast<double>(height - 1)), height - 2);
+  double lowest = 1;
   for (std::size_t k = 0; k < place.count; ++k) {
-    if (std::cos(static_cast<double>(tables_.theta[place.slices[k] % tables_.theta.size()])) <= kRglHorizon)
-      return false;
-  }
-  const double columns = static_cast<double>(tables_.spectra.width() - 1),
-               rows = static_cast<double>(tables_.spectra.height() - 1);
-  for (std::size_t k = 0; k < place.count; ++k) {
-    for (const double x : {std::floor(place.point.x * columns), std::ceil(place.point.x * columns)}) {
-      for (const double y : {std::floor(place.point.y * rows), std::ceil(place.point.y * rows)}) {
-        if (!(LightOf(place.slices[k], {x / columns, y / rows}).z > kRglHorizon)) return false;
-      }
+    for (const std::size_t node :
+         {row * width + column, row * width + column + 1, (row + 1) * width + column, (row + 1) * width + column + 1}) {
+      lowest = std::min(lowest, static_cast<double>(light_z_[place.slices[k] * tables_.nodes() + node]));
     }
   }
-  return true;
+  // A light below all nodes around it would be divided by a smaller cosine than any that was measured.
+  return lowest > 0 && wi.z >= lowest;
 }
 
 }  // namespace lobefit

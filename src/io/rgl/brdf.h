@@ -42,13 +42,14 @@ class RglBrdf {
     std::size_t count = 0;
   };
   Place Find(const Vec3& wi, const Vec3& wo) const;
-  // The light of a point of a slice's table, in that slice's own frame.
-  Vec3 LightOf(std::size_t slice, const Vec2& point) const;
+  // The light of a node of a slice's table.
+  Vec3 LightOf(std::size_t slice, std::size_t column, std::size_t row) const;
 
   RglTables tables_;
   Channels channels_;
   int reduction_;
   std::vector<BilinearWarp> warps_;
+  std::vector<float> light_z_;  // [slice][node]; 0 where light or viewer is at or below the horizon
 };
 
 }  // namespace lobefit
