@@ -202,7 +202,7 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
   const std::vector<Parameter> parameters = Parameters(material->model);
   for (std::size_t l = 0; l < material->model.lobes.size(); ++l) {
     const Lobe& lobe = material->model.lobes[l];
-    if (FamilyOf(lobe.ndf) != NdfFamily::kProfile) continue;
+    if (FamilyOf(lobe.ndf) != Family::kProfile) continue;
     const std::size_t first = FirstParameter(material->model, l) + kEllipseParameters;
     for (std::size_t k = 0; first + k < FirstFresnel(material->model, l); ++k) {
       FittedParameter& fitted = material->parameters[first + k];

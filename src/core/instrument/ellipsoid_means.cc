@@ -22,7 +22,7 @@ Sums AtPoint(const Ellipsoid& ellipsoid, const ConductorIndex& index, const Vec3
   Sums s;
   s[0] = EllipsoidD(ellipsoid, Normalized(wo + wi), &s[1]);
   double fr[7];
-  s[kEach] = EllipsoidConductorBrdf(ellipsoid, index, wo, wi, G1Kind::kClamped, fr);
+  s[kEach] = EllipsoidConductorBrdf(ellipsoid, index, wo, wi, Masking::kSmithSeparable, fr);
   std::copy(fr, fr + kEllipsoidParameters, &s[kEach + 1]);
   for (std::size_t k = 0; k < kEach; ++k) s[2 * kEach + k] = wi.z * wo.z * s[kEach + k];
   return s;

@@ -44,7 +44,7 @@ void MeanOfMirrored(const DirectionArrays& directions, const Lobe& lobe, const L
 }  // namespace
 
 bool HasMeanInClosedForm(const Lobe& lobe) {
-  return FamilyOf(lobe.ndf) == NdfFamily::kGgx && lobe.masking <= Masking::kSmithHeight;
+  return FamilyOf(lobe.ndf) == Family::kGgx && lobe.masking <= Masking::kSmithHeight;
 }
 
 LobeMeanRule MakeLobeMeanRule(const Lobe& lobe, const Aperture& aperture, double alpha, double cos_d) {

@@ -116,7 +116,7 @@ class Layout {
   void AddMean(std::size_t lobe, Shape* shape);
   // Parameters of the profile at `u`, and where asked d(parameter) / d(coordinate) of the free ones.
   std::vector<double> ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes = nullptr) const;
-  bool IsGamma(std::size_t lobe) const { return FamilyOf(recipe_.model.lobes[lobe].ndf) == NdfFamily::kStudent; }
+  bool IsGamma(std::size_t lobe) const { return FamilyOf(recipe_.model.lobes[lobe].ndf) == Family::kStudent; }
   void AddAngles();
   void AddOffset(const std::vector<std::string>& channels);
   void AddLinear(const Parameter& parameter, const ParameterRecipe& entry, const std::vector<std::string>& channels);

@@ -47,7 +47,7 @@ TEST(Misalignment, TurnAboutTheNormalIsTheLobesTurn) {
   Ellipsoid turned = e;
   turned.theta_z -= 0.2;
   const double a = MisalignedConductorBrdf(e, {0.2, 3}, wo, wi, {0, 0, 0.2}, ValueKind::kBrdf, nullptr);
-  const double b = EllipsoidConductorBrdf(turned, {0.2, 3}, wo, wi, G1Kind::kClamped);
+  const double b = EllipsoidConductorBrdf(turned, {0.2, 3}, wo, wi, Masking::kSmithSeparable);
   EXPECT_NEAR(a, b, 1e-13 * b);
 }
 
@@ -115,7 +115,7 @@ TEST(QuadratureMeans, OfAPointAreTheValues) {
   const Vec3 wi = Normalized(Vec3{0.4, 0.1, 0.8}), wo = Normalized(Vec3{-0.5, -0.1, 0.8});
   const EllipsoidMeans m = QuadratureMeans(e, {0.2, 3}, wo, wi, {});
   EXPECT_EQ(m.D.value, EllipsoidD(e, Normalized(wo + wi)));
-  EXPECT_EQ(m.fr.value, EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, G1Kind::kClamped));
+  EXPECT_EQ(m.fr.value, EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, Masking::kSmithSeparable));
   EXPECT_NEAR(m.flux.value, m.fr.value, 1e-15 * m.fr.value);
 }
 
