@@ -214,7 +214,7 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
     Description description = DescribeRanges(measurement);
     if (*statistics || measurement.samples.size() <= kStatisticsByDefault) {
       description.statistics = Describe(measurement, measurement.conventions.count("channels") == 0
-                                                         ? TabulatedBrdf(OnlyFile(*files), measurement)
+                                                         ? TabulatedBrdf(OnlyFile(*files), measurement).brdf
                                                          : nullptr);
     }
     if (!picture->empty()) WriteCoveragePng(measurement, *picture);

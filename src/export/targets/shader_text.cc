@@ -258,9 +258,9 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-WrittenFiles WriteShader(const FittedBrdf& fit, const std::filesystem::path& path, const std::string& text) {
+WrittenFiles WriteShader(const std::filesystem::path& path, const std::string& text) {
   WriteFileAtomically(path, text);
-  return {{path}, fit.function(), true, {"the error is not measured: the text is the model, in single precision"}};
+  return {{path}, nullptr, true, {"the text is the model, in single precision; that alone is not measured"}};
 }
 
 }  // namespace lobefit

@@ -6,6 +6,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/head/conventions.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/no_value.h"
 #include "lobefit/io/csv/head/phrases.h"
@@ -154,6 +155,7 @@ const FixedCoordinate* CsvKeys::Find(Coordinate coordinate) const {
 }
 
 bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, CsvKeys* keys) {
+  if (ReadConvention(line, text, keys)) return true;
   const std::size_t at = text.find_first_of(":=");
   if (at == std::string_view::npos) return ReadSentence(text, keys) || ReadPhrase(text, keys);
   if (ReadCoordinates(text, keys)) return true;
@@ -261,6 +263,7 @@ bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::str
   const bool marked = filled[0].find_first_of(":=") != std::string_view::npos ||
                       (filled.size() > 1 && filled[1].find_first_of(":=") == 0);
   if (!marked) {
+    if (filled.size() == 1 && ReadConvention(line, filled[0], keys)) return true;
     if (filled.size() == 1) return ReadSentence(filled[0], keys) || ReadPhrase(filled[0], keys);
     // "Scan 3, incidence 30 deg"
     for (const std::string_view field : filled) {
