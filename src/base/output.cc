@@ -1,9 +1,10 @@
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
+#include <memory>
 #include <optional>
-#include <streambuf>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -11,8 +12,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "lobefit/base/descriptor_stream.h"
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/base/file_group.h"
 #include "lobefit/base/pending_file.h"
 #include "lobefit/base/printable.h"
 
@@ -67,54 +70,6 @@ void RefuseKind(const Path& path, const struct stat& status) {
   if (access(path.c_str(), W_OK) != 0) FailToWrite(path, std::strerror(errno));
 }
 
-// Bytes to a descriptor that this class does not own.
-class DescriptorBuffer : public std::streambuf {
- public:
-  explicit DescriptorBuffer(int descriptor) : descriptor_(descriptor) { setp(buffer_.data(), buffer_.data() + kSize); }
-  // Why writing failed; 0 where it did not.
-  int reason() const { return reason_; }
-
- protected:
-  int_type overflow(int_type c) override {
-    if (!Send(buffer_.data(), pptr())) return traits_type::eof();
-    setp(buffer_.data(), buffer_.data() + kSize);
-    if (!traits_type::eq_int_type(c, traits_type::eof())) sputc(traits_type::to_char_type(c));
-    return traits_type::not_eof(c);
-  }
-  std::streamsize xsputn(const char* bytes, std::streamsize count) override {
-    if (count < epptr() - pptr()) return std::streambuf::xsputn(bytes, count);
-    if (sync() != 0 || !Send(bytes, bytes + count)) return 0;
-    return count;
-  }
-  int sync() override { return traits_type::eq_int_type(overflow(traits_type::eof()), traits_type::eof()) ? -1 : 0; }
-
- private:
-  static constexpr std::size_t kSize = 1 << 16;
-
-  bool Send(const char* begin, const char* end) {
-    while (begin != end && reason_ == 0) {
-      const ssize_t count = write(descriptor_, begin, static_cast<std::size_t>(end - begin));
-      if (count >= 0) begin += count;
-      if (count < 0 && errno != EINTR) reason_ = errno;
-    }
-    return reason_ == 0;
-  }
-
-  int descriptor_, reason_ = 0;
-  std::array<char, kSize> buffer_;
-};
-
-void Fill(int descriptor, const Path& path, const std::function<void(std::ostream&)>& write) {
-  DescriptorBuffer buffer(descriptor);
-  std::ostream out(&buffer);
-  write(out);
-  out.flush();
-  if (!out) {
-    throw OutputError(PrintableName(path) + ": writing failed: " + std::strerror(buffer.reason()) +
-                      (buffer.reason() == ENOSPC || buffer.reason() == EDQUOT ? "; is the disk full?" : ""));
-  }
-}
-
 void WriteThrough(const Path& path, const std::function<void(std::ostream&)>& write) {
   if (IsStandardOutput(path)) {
     // What was printed before comes before.
@@ -139,6 +94,29 @@ void KeepRights(int descriptor, const struct stat& old) {
   if (fchown(descriptor, old.st_uid, old.st_gid) != 0 && fchown(descriptor, static_cast<uid_t>(-1), old.st_gid) != 0)
     mode &= ~static_cast<mode_t>(S_IRWXG);
   if (fchmod(descriptor, mode) != 0) throw std::system_error(errno, std::generic_category());
+}
+
+// A file that is to stand where a regular one stands, or nothing.
+struct Replacement {
+  std::optional<struct stat> old;
+  Path target;
+  std::unique_ptr<PendingFile> file;
+};
+
+// `write` fills it. Throws OutputError and std::system_error.
+Replacement Prepare(const Path& path, const std::function<void(std::ostream&)>& write) {
+  Replacement made;
+  made.old = StatusOf(path);
+  if (made.old) RefuseKind(path, *made.old);
+  made.target = Resolved(path);
+  made.file = std::make_unique<PendingFile>(FolderOf(made.target));
+  Fill(made.file->descriptor(), path, write);
+  if (made.old) KeepRights(made.file->descriptor(), *made.old);
+  return made;
+}
+
+std::function<void(std::ostream&)> Writing(std::string_view bytes) {
+  return [bytes](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); };
 }
 
 }  // namespace
@@ -184,24 +162,51 @@ void CheckOutput(const Path& output, const std::vector<Path>& inputs) {
 }
 
 void WriteFileAtomically(const Path& path, const std::function<void(std::ostream&)>& write) {
-  if (IsStandardOutput(path)) return WriteThrough(path, write);
-  const std::optional<struct stat> old = StatusOf(path);
-  if (old) RefuseKind(path, *old);
-  if (old && IsThrough(*old)) return WriteThrough(path, write);
-  const Path target = Resolved(path);
+  if (IsStream(path)) return WriteThrough(path, write);
   try {
-    PendingFile file(FolderOf(target));
-    Fill(file.descriptor(), path, write);
-    if (old) KeepRights(file.descriptor(), *old);
-    file.TakePlaceOf(target.filename().string());
+    const Replacement made = Prepare(path, write);
+    made.file->TakePlaceOf(made.target.filename().string());
   } catch (const std::system_error& error) {
     FailToWrite(path, error.code().message());
   }
 }
 
-void WriteFileAtomically(const Path& path, std::string_view bytes) {
-  WriteFileAtomically(path,
-                      [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+void WriteFileAtomically(const Path& path, std::string_view bytes) { WriteFileAtomically(path, Writing(bytes)); }
+
+void FileGroup::Add(const Path& path, std::string_view bytes) {
+  if (IsStream(path)) FailToWrite(path, "it is a pipe or device");
+  try {
+    Replacement made = Prepare(path, Writing(bytes));
+    entries_.push_back({path, std::move(made.target), std::move(made.file)});
+  } catch (const std::system_error& error) {
+    FailToWrite(path, error.code().message());
+  }
+}
+
+void FileGroup::Take(FileGroup&& other) {
+  std::move(other.entries_.begin(), other.entries_.end(), std::back_inserter(entries_));
+  other.entries_.clear();
+}
+
+void FileGroup::Commit() {
+  const auto each = [&](const auto& action) {
+    for (Entry& entry : entries_) {
+      try {
+        action(&entry);
+      } catch (const std::system_error& error) {
+        FailToWrite(entry.path, error.code().message());
+      }
+    }
+  };
+  // All are on their way before one is waited for, so that the disk takes them together.
+  each([](Entry* entry) { entry->file->BeginToDisk(); });
+  each([](Entry* entry) { entry->file->BringToDisk(); });
+  each([](Entry* entry) { entry->file->TakeName(entry->target.filename().string()); });
+  std::set<Path> folders;
+  for (const Entry& entry : entries_) {
+    if (folders.insert(FolderOf(entry.target)).second) entry.file->BringFolderToDisk();
+  }
+  entries_.clear();
 }
 
 }  // namespace lobefit

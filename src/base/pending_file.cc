@@ -24,7 +24,7 @@ struct Slot {
   int folder = -1;
   std::array<char, 48> name = {};
 };
-constexpr std::size_t kSlots = 64;
+constexpr std::size_t kSlots = 256;
 
 std::array<Slot, kSlots>& Slots() {
   static std::array<Slot, kSlots> slots;
@@ -79,8 +79,20 @@ PendingFile::~PendingFile() {
 }
 
 void PendingFile::TakePlaceOf(const std::string& name) {
+  BringToDisk();
+  TakeName(name);
+  BringFolderToDisk();
+}
+
+// Where that is not possible the wait is longer, and says what failed.
+void PendingFile::BeginToDisk() { sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE); }
+
+void PendingFile::BringToDisk() {
   // EINVAL: a file system without anything to bring to a disk.
   if (fsync(descriptor_) != 0 && errno != EINVAL) ThrowErrno();
+}
+
+void PendingFile::TakeName(const std::string& name) {
   const bool unnamed = name_.empty();
   const std::string self = "/proc/self/fd/" + std::to_string(descriptor_);
   // A name that is not taken yet is given at once, so that no death can leave another one; a link replaces nothing.
@@ -92,9 +104,10 @@ void PendingFile::TakePlaceOf(const std::string& name) {
   }
   if (!is_new && renameat(folder_, name_.c_str(), folder_, name.c_str()) != 0) ThrowErrno();
   ForgetName();
-  // The new name too; it is there already for every other process, so that a failure undoes nothing.
-  fsync(folder_);
 }
+
+// The name is there already for every other process, so that a failure undoes nothing.
+void PendingFile::BringFolderToDisk() { fsync(folder_); }
 
 void PendingFile::RememberName() {
   name_ = RandomName();

@@ -18,9 +18,14 @@ class PendingFile {
   PendingFile& operator=(const PendingFile&) = delete;
 
   int descriptor() const { return descriptor_; }
-  // Brings the data to the disk and puts the file in the place of `name` in its folder, in one step. Throws
-  // std::system_error.
+  // Brings the data to the disk and puts the file in the place of `name` in its folder. Throws std::system_error.
   void TakePlaceOf(const std::string& name);
+  // The steps of it, each for many files before the next: the data are sent; waited for; the file is named, in one
+  // step for every other process; its folder is brought to the disk. The second and third throw std::system_error.
+  void BeginToDisk();
+  void BringToDisk();
+  void TakeName(const std::string& name);
+  void BringFolderToDisk();
 
  private:
   void RememberName();

@@ -22,11 +22,10 @@ std::size_t Total(const ResultTable& table, TaskStatus status) {
 
 }  // namespace
 
-void WriteResults(const WorkList& list, const Records& records, const ResultTable& table,
-                  const std::filesystem::path& out) {
-  WriteFileAtomically(out / "results.csv", ToCsv(table));
-  WriteFileAtomically(out / "results.jsonl", ToJsonLines(table));
-  WriteFileAtomically(out / "runs.csv", RunsToCsv(list, records));
+void WriteResults(const ResultTable& table, int threads, const std::filesystem::path& out) {
+  WriteFileAtomically(out / "results.csv", [&](std::ostream& file) { WriteCsv(table, threads, file); });
+  WriteFileAtomically(out / "results.jsonl", [&](std::ostream& file) { WriteJsonLines(table, threads, file); });
+  WriteFileAtomically(out / "runs.csv", [&](std::ostream& file) { WriteRuns(table, file); });
   IndexOptions options;
   options.title = std::filesystem::absolute(out).lexically_normal().filename().string();
   if (options.title.empty()) options.title = "batch";

@@ -4,15 +4,12 @@
 #include <filesystem>
 #include <string>
 
-#include "lobefit/batch/list/work_list.h"
 #include "lobefit/batch/results/results.h"
-#include "lobefit/batch/run/records.h"
 
 namespace lobefit {
 
 // Writes results.csv, results.jsonl, runs.csv and index.html into `out`. Throws OutputError.
-void WriteResults(const WorkList& list, const Records& records, const ResultTable& table,
-                  const std::filesystem::path& out);
+void WriteResults(const ResultTable& table, int threads, const std::filesystem::path& out);
 
 // How many tasks are fitted, doubtful, failed, crashed, missing, with the first failures and missing ones by name.
 std::string StatusToText(const ResultTable& table);

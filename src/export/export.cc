@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
@@ -96,7 +97,9 @@ std::vector<std::string> Header(const Material& material, const ExportOptions& o
 
 // What counts is the file: it is read back where it can be.
 void Complete(const WrittenFiles& written, const ErrorMeter& meter, Clock::time_point start, ExportResult* result) {
-  result->error = meter.Compare(written.brdf);
+  result->error = {};
+  result->error.albedo = std::numeric_limits<double>::quiet_NaN();
+  if (written.brdf) result->error = meter.Compare(written.brdf);
   result->files = written.files;
   result->notes = written.notes;
   for (const std::filesystem::path& file : result->files) result->bytes += std::filesystem::file_size(file);
@@ -156,10 +159,12 @@ ExportResult ExportTo(const Target& target, const Subject& subject, const Export
   const FittedBrdf& fit = refitted ? *refitted : subject.fit;
   result.carries = target.carries(subject.fit);
   CompleteRows(subject, refitted.has_value(), &result.carries);
-  const WrittenFiles written =
+  WrittenFiles written =
       target.write(fit, {options.folder, options.name, Header(subject.fit.material(), options, result, remarks),
                          options.map_path, options.old_mitsuba});
   if (target.evaluate == nullptr) result.numbers = written.exact ? "exact" : "tabulated";
+  // A text that is not read back is the model: what was left out or converted before is its error.
+  if (!written.brdf && !subject.changes.empty()) written.brdf = fit.function();
   Complete(written, *subject.meter, start, &result);
   return result;
 }

@@ -14,9 +14,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json LevelsJson(const ErrorLevels& levels) {
-  return {{"median", levels.median},
-          {"percentile_90", levels.percentile_90},
-          {"maximum", levels.maximum},
+  const auto level = [&](double value) { return levels.compared == 0 ? Json() : Json(value); };
+  return {{"median", level(levels.median)},
+          {"percentile_90", level(levels.percentile_90)},
+          {"maximum", level(levels.maximum)},
           {"compared", levels.compared}};
 }
 

@@ -24,9 +24,6 @@
 namespace lobefit {
 namespace {
 
-// Errors below this share of the measured values' own root mean square are rounding, and equal.
-constexpr double kRounding = 1e-6;
-
 double Seconds(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -23,6 +23,8 @@ namespace lobefit {
 
 // Excess in mean square that is not worth a parameter: 1 % in root mean square.
 inline constexpr double kWorthNothing = 0.02;
+// Errors below this share of the measured values' own root mean square are rounding, and equal.
+inline constexpr double kRounding = 1e-6;
 
 struct CompareOptions {
   FitOptions fit;

@@ -85,6 +85,7 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
   std::vector<Eigen::Index> free_rows;
   std::vector<double> factors;
   const std::vector<std::string> names = EntryNames(parameters, material->channels);
+  const bool drift_estimated = recipe.instrument.drift && !recipe.instrument.drift->sd;
   Eigen::Index row = 0;
   std::size_t linear_seen = 0;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -99,6 +100,8 @@ void Report(const Layout& layout, const std::vector<double>& u, const Uncertaint
       fitted.freedom.push_back(std::isnan(fitted.standard_error_clustered.back())
                                    ? kNan
                                    : uncertainty.freedom[static_cast<std::size_t>(row)]);
+      if (drift_estimated)
+        fitted.independent_freedom.push_back(uncertainty.independent_freedom[static_cast<std::size_t>(row)]);
       if (fitted.free) {
         free_rows.push_back(row);
         factors.push_back(1 / InsideFactor(parameters[i]));
@@ -202,7 +205,7 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
   const std::vector<Parameter> parameters = Parameters(material->model);
   for (std::size_t l = 0; l < material->model.lobes.size(); ++l) {
     const Lobe& lobe = material->model.lobes[l];
-    if (FamilyOf(lobe.ndf) != NdfFamily::kProfile) continue;
+    if (FamilyOf(lobe.ndf) != Family::kProfile) continue;
     const std::size_t first = FirstParameter(material->model, l) + kEllipseParameters;
     for (std::size_t k = 0; first + k < FirstFresnel(material->model, l); ++k) {
       FittedParameter& fitted = material->parameters[first + k];

@@ -119,10 +119,10 @@ SmallFit DescendFrom(const Layout& layout, const std::vector<double>& start, con
 std::vector<SmallFit> FitMany(const Recipe& recipe, const std::vector<const Samples*>& samples,
                               const FitManyOptions& options) {
   const Model& model = recipe.model;
-  const NdfFamily family = model.lobes.empty() ? NdfFamily::kGgx : FamilyOf(model.lobes[0].ndf);
+  const Family family = model.lobes.empty() ? Family::kGgx : FamilyOf(model.lobes[0].ndf);
   const bool linear = model.lobes.size() == 1 &&
                       (model.diffuse == Diffuse::kLambert || model.diffuse == Diffuse::kNone) &&
-                      family != NdfFamily::kProfile && family != NdfFamily::kStudent &&
+                      family != Family::kProfile && family != Family::kStudent &&
                       (model.lobes[0].fresnel == Fresnel::kSchlick || model.lobes[0].fresnel == Fresnel::kNone);
   if (!linear) {
     throw InputError("recipe '" + recipe.name +

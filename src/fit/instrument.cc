@@ -38,6 +38,36 @@ std::vector<double> AzimuthsOfTurns(const Measurement& measurement) {
   return azimuths;
 }
 
+// A half angle that is to be fitted must be known in the first place.
+void RequireHalfAngle(const char* which, const std::optional<double>& half_angle, const std::optional<double>& prior,
+                      const std::string& source) {
+  if (!prior || half_angle.value_or(0) > 0) return;
+  throw InputError(fmt::format(
+      "{}: the half angle of the {} is to be fitted (known to {:.3g} degrees), but {}; give --{} DEGREES, or leave its "
+      "prior out",
+      source, which, RadiansToDegrees(*prior),
+      half_angle ? "it is 0, a point" : "neither the recipe nor the file states it", which));
+}
+
+// What the means over a rectangular detector are made for.
+void RequireRectangle(const Recipe& recipe, const std::string& source) {
+  const InstrumentRecipe& instrument = recipe.instrument;
+  if (!instrument.detector_across) return;
+  const auto refuse = [&](const char* why) {
+    throw InputError(fmt::format("{}: the detector is a rectangle (half angle across {:.3g} degrees), {}", source,
+                                 RadiansToDegrees(*instrument.detector_across), why));
+  };
+  if (!(instrument.detector.value_or(0) > 0))
+    refuse("but its half angle along the meridian is not known; give --detector DEGREES");
+  if (instrument.source.value_or(0) > 0)
+    refuse(
+        "over which a mean with a source that is a disc too is not known; give --source 0, or both as discs of the "
+        "same solid angle");
+  if (instrument.detector_prior) refuse("whose half angles are not fitted; leave the detector's prior out");
+  if (recipe.aperture().mean == ApertureMean::kPlain)
+    refuse("over which the mean is that of the flux; leave mean = \"plain\" out");
+}
+
 // What incidences must be for gains, alignment and offset to be more than another name of the model.
 void RequireIncidences(const Recipe& recipe, const Measurement& measurement, const Incidences& incidences) {
   const InstrumentRecipe& instrument = recipe.instrument;
@@ -99,10 +129,21 @@ Recipe ThroughInstrument(const Recipe& recipe, const Measurement& measurement) {
   Recipe through = recipe;
   InstrumentRecipe& instrument = through.instrument;
   const StatedInstrument& stated = measurement.instrument;
-  if (!instrument.source) instrument.source = stated.source;
-  if (!instrument.detector) instrument.detector = stated.detector;
+  // A half angle that the recipe states is not the file's, whose uncertainty and shape do not belong to it.
+  if (!instrument.detector && !instrument.detector_across) instrument.detector_across = stated.detector_across;
+  const auto take = [](const std::optional<double>& from, const std::optional<double>& from_prior,
+                       std::optional<double>* half_angle, std::optional<double>* prior) {
+    if (*half_angle) return;
+    *half_angle = from;
+    if (!*prior) *prior = from_prior;
+  };
+  take(stated.source, stated.source_prior, &instrument.source, &instrument.source_prior);
+  take(stated.detector, stated.detector_prior, &instrument.detector, &instrument.detector_prior);
+  RequireHalfAngle("source", instrument.source, instrument.source_prior, measurement.source);
+  RequireHalfAngle("detector", instrument.detector, instrument.detector_prior, measurement.source);
   if (!instrument.mean && stated.plain_mean)
     instrument.mean = *stated.plain_mean ? ApertureMean::kPlain : ApertureMean::kFlux;
+  RequireRectangle(through, measurement.source);
   const Incidences incidences = GroupByIncidence(measurement);
   RequireIncidences(through, measurement, incidences);
   if (instrument.alignment) instrument.alignment->azimuths = AzimuthsOfTurns(measurement);
@@ -115,7 +156,7 @@ Recipe ThroughInstrument(const Recipe& recipe, const Measurement& measurement) {
                      "fresnel = 'coat-layered', or leave --source and --detector out (0 where the file states them)");
   }
   const std::optional<double> step = DetectorStep(measurement, incidences);
-  const double widest = std::max(aperture.source, aperture.detector);
+  const double widest = std::max({aperture.source, aperture.detector, aperture.across});
   if (step && widest > kMostSteps * *step) {
     throw InputError(fmt::format(
         "{}: a {} of half angle {:.3g} degrees is {:.0f} times the step between neighbouring directions, {:.3g} "

@@ -78,7 +78,7 @@ void ReportAlignment(const Layout& layout, const std::vector<double>& u, const U
   instrument->azimuths = recipe.azimuths;
   bool told = true, any_tilt = false;
   double worst_share = 0, worst_correlation = 0;
-  for (std::size_t k = layout.first_angle(); k < layout.shape_size(); ++k) {
+  for (std::size_t k = layout.first_angle(); k < layout.first_half_angle(); ++k) {
     const Eigen::Index row = first + static_cast<Eigen::Index>(k - layout.first_angle());
     const Coordinate& coordinate = layout.coordinates()[k];
     InstrumentAngle angle = {coordinate.name, u[k], ErrorOf(uncertainty, row), 1 / std::sqrt(coordinate.prior),
@@ -116,19 +116,58 @@ void ReportAlignment(const Layout& layout, const std::vector<double>& u, const U
                                    "second as FILE:turned=true"));
 }
 
+void ReportHalfAngles(const Layout& layout, const std::vector<double>& u, const Uncertainty& uncertainty,
+                      InstrumentUsed* instrument, std::vector<std::string>* remarks) {
+  const Eigen::Index first = EntriesOfModel(layout);
+  const Aperture given = layout.recipe().aperture();
+  for (std::size_t k = layout.first_half_angle(); k < layout.shape_size(); ++k) {
+    const Coordinate& coordinate = layout.coordinates()[k];
+    InstrumentHalfAngle half_angle;
+    half_angle.name = coordinate.name;
+    half_angle.given = coordinate.name == "source" ? given.source : given.detector;
+    half_angle.value = half_angle.given + u[k];
+    half_angle.standard_error = ErrorOf(uncertainty, first + static_cast<Eigen::Index>(k - layout.first_angle()));
+    half_angle.prior = 1 / std::sqrt(coordinate.prior);
+    half_angle.determined = half_angle.standard_error <= kMostPriorShare * half_angle.prior;
+    instrument->half_angles.push_back(half_angle);
+    const double error = RadiansToDegrees(half_angle.standard_error), prior = RadiansToDegrees(half_angle.prior);
+    if (uncertainty.at_bound[k]) {
+      remarks->push_back(fmt::format(
+          "{}: its half angle was fitted to {:.3g} degrees, as far from the given {:.3g} as is looked ({:g} standard "
+          "deviations of {:.2g}): check what was given, or the model",
+          half_angle.name, RadiansToDegrees(half_angle.value), RadiansToDegrees(half_angle.given), kMostHalfAngleSigmas,
+          prior));
+    } else if (half_angle.determined) {
+      remarks->push_back(fmt::format(
+          "{}: the samples determine its half angle, {:.3f} +- {:.2g} degrees (given: {:.3g} +- {:.2g})",
+          half_angle.name, RadiansToDegrees(half_angle.value), error, RadiansToDegrees(half_angle.given), prior));
+    } else {
+      remarks->push_back(
+          fmt::format("{}: its half angle is not determined by these samples (its error is {:.0f} % of the {:.2g} "
+                      "degrees that were "
+                      "given), so the widths are known no better than it. A sample of known narrow lobe, or a mirror, "
+                      "measured with "
+                      "the same detector tells it",
+                      half_angle.name, 100 * half_angle.standard_error / half_angle.prior, prior));
+    }
+  }
+}
+
 }  // namespace
 
 void ReportInstrument(const Problem& problem, const Layout& layout, const std::vector<double>& u,
                       const Uncertainty& uncertainty, const Incidences& incidences, const LastDescent& last,
                       ThreadPool* pool, Material* material) {
   const Recipe& recipe = layout.recipe();
-  const Aperture aperture = recipe.aperture();
+  const Aperture aperture = layout.ApertureAt(u.data());
   const InstrumentRecipe& wanted = recipe.instrument;
   if (!aperture.any() && !wanted.drift && !wanted.alignment && !wanted.offset) return;
   InstrumentUsed instrument;
   instrument.source = aperture.source;
   instrument.detector = aperture.detector;
+  instrument.across = aperture.across;
   instrument.mean = NameOf(ApertureMeanChoices(), aperture.mean);
+  ReportHalfAngles(layout, u, uncertainty, &instrument, &material->remarks);
   if (wanted.drift)
     ReportGains(problem, layout, u, uncertainty, incidences, last, pool, &instrument, &material->remarks);
   if (wanted.alignment) ReportAlignment(layout, u, uncertainty, &instrument, &material->remarks);

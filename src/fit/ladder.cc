@@ -4,7 +4,9 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <string>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -42,8 +44,10 @@ struct Rung {
   TriedModel tried;
   std::vector<double> mean_square;      // of each fold's test
   std::vector<ParameterValues> shapes;  // [lobe] its ellipse on the subsample
-  bool above_one = false;               // the first lobe's reflectance is at its bound
-  bool creates_energy = false;          // CreatesEnergy
+  // What else was found there, by name, but for coefficients of profiles.
+  std::map<std::string, std::vector<double>> others;
+  bool above_one = false;       // the first lobe's reflectance is at its bound
+  bool creates_energy = false;  // CreatesEnergy
   double mean() const {
     return std::accumulate(mean_square.begin(), mean_square.end(), 0.0) / static_cast<double>(mean_square.size());
   }
@@ -62,6 +66,18 @@ Samples SomeChannels(const Samples& samples, const std::vector<std::size_t>& ind
   for (const std::size_t c : SpreadChannels(some.values.size())) values.push_back(std::move(some.values[c]));
   some.values = std::move(values);
   return some;
+}
+
+// Fresnel terms, diffuse parts and exponents of tails as starts. Those of another number of channels are no starts.
+void StartOthersAt(const std::map<std::string, std::vector<double>>& found, std::size_t channels, Recipe* recipe) {
+  const std::vector<Parameter> parameters = Parameters(recipe->model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto others = found.find(parameters[i].json_name);
+    if (others == found.end() || others->second.size() != (parameters[i].per_channel ? channels : 1)) continue;
+    if (!recipe->IsFree(i)) continue;
+    std::vector<double>& start = recipe->parameters[i].start = others->second;
+    for (double& value : start) value = std::clamp(value, parameters[i].low, parameters[i].high);
+  }
 }
 
 // The lobes' ellipses as starts of the first lobes of a recipe, within the ranges of its parameters.
@@ -98,7 +114,11 @@ class Ladder {
     const std::vector<std::size_t> chosen = StratifiedSubsample(measurement.samples.size(), kSamples, options.seed);
     for (const std::size_t c : SpreadChannels(measurement.channels.names.size()))
       channels_.push_back(measurement.channels.names[c]);
+    all_channels_ = measurement.channels.names.size();
     all_ = SomeChannels(measurement.samples, chosen);
+    const std::vector<std::vector<double>> black(all_.values.size(), std::vector<double>(all_.size(), 0.0));
+    exact_ = kRounding * kRounding *
+             SumSquares(simplest_.metric, simplest_.noise, simplest_.weighting, true, all_, black).MeanSquare();
     for (std::size_t k = 0; k < folds; ++k) {
       std::vector<std::size_t> training, test;
       for (const std::size_t i : chosen) (dealt[incidences.group[i]] == k ? test : training).push_back(i);
@@ -132,7 +152,7 @@ class Ladder {
   // The one with the fewest parameters that predicts as well, but for what is worth nothing.
   const Rung& Simplest() const {
     const Rung* simplest = &Best();
-    const double most = simplest->mean() * (1 + kWorthNothing);
+    const double most = simplest->mean() * (1 + kWorthNothing) + exact_;
     for (const Rung& rung : rungs_) {
       if (rung.mean() <= most && rung.tried.free_parameters < simplest->tried.free_parameters) simplest = &rung;
     }
@@ -159,8 +179,8 @@ class Ladder {
       const auto n = static_cast<double>(rung.mean_square.size());
       const double error = std::sqrt(square / (n - 1) / n);
       // Never one that predicts worse than the simplest.
-      const bool good =
-          excess <= std::max(error, kWorthNothing * best.mean()) && rung.mean() <= rungs_[0].mean() * (1 + 1e-9);
+      const bool good = excess <= std::max({error, kWorthNothing * best.mean(), exact_}) &&
+                        rung.mean() <= rungs_[0].mean() * (1 + 1e-9) + exact_;
       if (!good) continue;
       // What can be a surface before what cannot, then the fewest parameters.
       const auto rank = [](const Rung& of) { return std::pair(of.creates_energy, of.tried.free_parameters); };
@@ -174,7 +194,10 @@ class Ladder {
     choice.recipe.metric = wanted_;
     // Several lobes have hundreds of starts, and those of a spectrum cost most; the search was made on the subsample.
     choice.warm = rung.shapes.size() > 1 || channels_.size() == kMostChannels;
-    if (choice.warm) StartAt(rung.shapes, &choice.recipe);
+    if (choice.warm) {
+      StartAt(rung.shapes, &choice.recipe);
+      StartOthersAt(rung.others, all_channels_, &choice.recipe);
+    }
     choice.recipe.reason = fmt::format(
         "of {} models the simplest whose error on held-out incident directions ({:.3g}) is within one standard error "
         "of the least ({:.3g}, {}); one lobe of the simplest kind: {:.3g}",
@@ -213,6 +236,11 @@ class Ladder {
         const auto first = values.begin() + static_cast<std::ptrdiff_t>(FirstParameter(recipe.model, l));
         rung.shapes.emplace_back(first, first + static_cast<std::ptrdiff_t>(kEllipseParameters));
       }
+      const std::vector<Parameter> parameters = Parameters(recipe.model);
+      for (std::size_t i = 0; i < parameters.size(); ++i) {
+        if (parameters[i].group != ParameterGroup::kShape || parameters[i].json_name.ends_with("gamma"))
+          rung.others[parameters[i].json_name] = values[i];
+      }
       rung.mean_square.assign(folds_.size(), kNan);
       if (!recipe.free_scale)
         rung.creates_energy = CreatesEnergy(BalanceAt(wi_, recipe.model, values, channels_, &pool_));
@@ -244,6 +272,8 @@ class Ladder {
   std::vector<Vec3> wi_;  // where albedos are looked at
   ThreadPool pool_;
   bool scaled_;
+  std::size_t all_channels_ = 0;
+  double exact_ = 0;  // mean square that is no error
   Samples all_;
   std::vector<Split> folds_;
   std::deque<Rung> rungs_;  // references stay
@@ -319,6 +349,7 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
     curved.lobes = std::move(lobes);
     ladder.Try(curved, NameOfParts(curved), base);
   };
+  with_curve({{shape}}, &plain);
   with_curve({{profile}}, with_profile);
   with_curve({{shape}, {Ndf::kGgx}}, with_two);
   with_curve({{student}, {student}}, with_two);

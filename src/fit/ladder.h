@@ -23,7 +23,7 @@ struct LadderChoice {
 };
 
 // At most so many models are judged (FitOptions::on_tried).
-inline constexpr std::size_t kMostTried = 17;
+inline constexpr std::size_t kMostTried = 18;
 // After so many steps of descents from many starts the best of them are mostly known (FitOptions::scouting_steps).
 inline constexpr int kScoutingSteps = 15;
 // Descents (FitOptions::starts) of a model whose starts are those of its search.

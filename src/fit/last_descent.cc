@@ -12,7 +12,8 @@ namespace lobefit {
 namespace {
 
 bool HasLastDescent(const InstrumentRecipe& instrument) {
-  return instrument.drift || instrument.alignment || instrument.offset;
+  return instrument.drift || instrument.alignment || instrument.offset || instrument.source_prior ||
+         instrument.detector_prior || instrument.detector_across;
 }
 
 // A point of the search in the coordinates of the last descent: its angles stand between shapes and the rest, its
@@ -90,6 +91,13 @@ Recipe WithoutLastDescent(const Recipe& recipe) {
   plain.instrument.drift.reset();
   plain.instrument.alignment.reset();
   plain.instrument.offset = false;
+  plain.instrument.source_prior.reset();
+  plain.instrument.detector_prior.reset();
+  if (plain.instrument.detector_across) {
+    // A mean over a rectangle takes as long as a hundred over a disc: of the same solid angle.
+    plain.instrument.detector = std::sqrt(4 / kPi * *plain.instrument.detector * *plain.instrument.detector_across);
+    plain.instrument.detector_across.reset();
+  }
   return plain;
 }
 

@@ -1,5 +1,6 @@
 // The last descent of a fit, with what an instrument does besides averaging: gains of the incidences, a crooked sample,
-// an offset. The search before it does without them, which leaves its minima where they are and costs a fraction.
+// an offset, half angles, a rectangular detector. The search before it does without them, which leaves its minima near
+// where they are and costs a fraction.
 #pragma once
 
 #include <memory>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
@@ -50,6 +51,26 @@ Paths WriteSamples(const WriteSource& source, const Path& path, Write&& write) {
 
 BrdfFunction FunctionOf(const WriteSource& source) {
   return source.brdf ? source.brdf : Interpolate(*source.measurement);
+}
+
+// For tables that have no mark for what was not measured: there f_r is that of the nearest covered pair on the way to
+// the normal, in place of a value over a cosine that goes to zero.
+BrdfFunction Continued(const BrdfFunction& brdf, const DirectionsPredicate& covers) {
+  if (!covers) return brdf;
+  return [brdf, covers](const Vec3& wi, const Vec3& wo, double* values) {
+    constexpr int kSteps = 45;
+    Vec3 light = wi, viewer = wo;
+    for (int step = 1; step < kSteps && wi.z > 0 && wo.z > 0 && !covers(light, viewer); ++step) {
+      if (covers(viewer, light)) {
+        std::swap(light, viewer);
+        break;
+      }
+      const double share = 1 - static_cast<double>(step) / kSteps;
+      light = FromSpherical(share * PolarAngle(wi), Azimuth(wi));
+      viewer = FromSpherical(share * PolarAngle(wo), Azimuth(wo));
+    }
+    brdf(light, viewer, values);
+  };
 }
 
 Paths WriteCsvFormat(const WriteSource& source, const WriteOptions&, const Path& path) {
@@ -122,7 +143,7 @@ Paths WriteMerlFormat(const WriteSource& source, const WriteOptions& options, co
   // the mirror direction, where phi_d is not defined.
   const double tolerance = by_azimuth || source.isotropic ? std::numeric_limits<double>::infinity() : 1e-3;
   WriteMerl(by_azimuth ? IsotropicFunction(*source.measurement, "a MERL table") : FunctionOf(source), source.channels,
-            {options.merl_cell, tolerance}, path);
+            {options.merl_cell, tolerance, source.covers}, path);
   return {path};
 }
 
@@ -254,11 +275,12 @@ const WriteFormat& FindWriteFormat(const std::optional<std::string>& name, const
                               ": the name does not say which format to write; choose one with --to: " + Join(names));
 }
 
-BrdfFunction TabulatedBrdf(const std::filesystem::path& path, const Measurement& measurement) {
-  if (measurement.format != "rgl") return nullptr;
+TabulatedFunction TabulatedBrdf(const std::filesystem::path& path, const Measurement& measurement) {
+  if (measurement.format != "rgl") return {};
   const DecodedFile file(path);
   const auto brdf = std::make_shared<const RglBrdf>(path, file.bytes());
-  return [brdf](const Vec3& wi, const Vec3& wo, double* values) { brdf->Evaluate(wi, wo, values); };
+  return {[brdf](const Vec3& wi, const Vec3& wo, double* values) { brdf->Evaluate(wi, wo, values); },
+          [brdf](const Vec3& wi, const Vec3& wo) { return brdf->Covers(wi, wo); }};
 }
 
 Conversion Convert(const WriteSource& source, const WriteFormat& format, const WriteOptions& options,
@@ -267,6 +289,8 @@ Conversion Convert(const WriteSource& source, const WriteFormat& format, const W
   WriteSource with_function = source;
   // Interpolated once, for writing and for comparing.
   if (format.is_grid && !source.brdf) with_function.brdf = Interpolate(*source.measurement);
+  const bool has_mark = std::string_view(format.name) == "merl";
+  if (format.is_grid && !has_mark) with_function.brdf = Continued(with_function.brdf, source.covers);
   conversion.files = format.write(with_function, options, path);
   AddWords(source, format, options, &conversion);
 
@@ -275,12 +299,17 @@ Conversion Convert(const WriteSource& source, const WriteFormat& format, const W
   std::vector<std::string> names;
   for (const std::filesystem::path& file : conversion.files) names.push_back(file.string());
   const Measurement back = ReadSeries(names, read);
+  if (has_mark && back.set_aside[SetAsideReason::kHole] > 0) {
+    conversion.losses.push_back(std::to_string(back.set_aside[SetAsideReason::kHole]) +
+                                " cells above the horizon are marked as not measured: the file holds nothing there, "
+                                "beyond its polar angles or beside nodes below the horizon");
+  }
   const Measurement original = source.measurement != nullptr ? *source.measurement : Tabulated(source);
   if (back.format == "exr" && options.exr.axes != ExrAxes::kUtia) {
     // Only what the image holds can be compared.
     conversion.difference = CompareWith(back, FunctionOf(with_function));
   } else {
-    const BrdfFunction tabulated = names.size() == 1 ? TabulatedBrdf(conversion.files[0], back) : nullptr;
+    const BrdfFunction tabulated = names.size() == 1 ? TabulatedBrdf(conversion.files[0], back).brdf : nullptr;
     const WrittenDifference written = CompareWritten(original, back, format.is_grid, tabulated);
     conversion.difference = written.difference;
     conversion.not_compared = written.reason;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lobefit/io/exr/map.h"
+#include "lobefit/io/merl/writer.h"
 #include "lobefit/io/read.h"
 #include "lobefit/io/rgl/writer.h"
 #include "lobefit/measurement/brdf_function.h"
@@ -23,6 +24,7 @@ struct WriteSource {
   BrdfFunction brdf;
   Channels channels;
   bool isotropic = false;
+  DirectionsPredicate covers = {};  // where the function lies between measured values; null: everywhere
 };
 
 struct WriteOptions {
@@ -50,9 +52,13 @@ const std::vector<WriteFormat>& WriteFormats();
 // Throws UsageError that lists the formats.
 const WriteFormat& FindWriteFormat(const std::optional<std::string>& name, const std::filesystem::path& path);
 
-// The file's own function of directions, where the format defines one (rgl: what renderers evaluate); nothing
-// otherwise.
-BrdfFunction TabulatedBrdf(const std::filesystem::path& path, const Measurement& measurement);
+// The file's own function of directions, where the format defines one (rgl: what renderers evaluate), and where it lies
+// between measured values; nothing otherwise.
+struct TabulatedFunction {
+  BrdfFunction brdf;
+  DirectionsPredicate covers;
+};
+TabulatedFunction TabulatedBrdf(const std::filesystem::path& path, const Measurement& measurement);
 
 // Writes a file into another format and reads it back. What was lost: words (what the target cannot hold, samples that
 // were set aside when reading back) and numbers (the target's values against the source's, see compare_written.h).

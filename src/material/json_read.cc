@@ -182,6 +182,7 @@ void ReadParameters(const Reader& reader, Material* material) {
     fitted.standard_error = reader.GetNumbers(entry, "stderr", factor);
     fitted.standard_error_clustered = reader.GetNumbers(entry, "stderr_clustered", factor);
     if (entry.contains("clustered_freedom")) fitted.freedom = reader.GetNumbers(entry, "clustered_freedom", 1);
+    if (entry.contains("stderr_freedom")) fitted.independent_freedom = reader.GetNumbers(entry, "stderr_freedom", 1);
     if (entry.contains("stderr_by_file")) {
       fitted.standard_error_by_file = reader.GetNumbers(entry, "stderr_by_file", factor);
       fitted.freedom_by_file = reader.GetNumbers(entry, "by_file_freedom", 1);
@@ -212,10 +213,21 @@ void ReadParameters(const Reader& reader, Material* material) {
 // What pictures and predictions compute with.
 void CheckInstrument(const Reader& reader, const InstrumentUsed& instrument, std::size_t channels) {
   constexpr double kMostHalfAngle = 30.001 * kPi / 180, kMostAngle = 10.001 * kPi / 180;
-  for (const double half_angle : {instrument.source, instrument.detector}) {
+  for (const double half_angle : {instrument.source, instrument.detector, instrument.across}) {
     if (!(half_angle >= 0 && half_angle <= kMostHalfAngle))
       reader.Fail(
           fmt::format("a half angle of the instrument is {:g} degrees; allowed are 0 to 30", half_angle * 180 / kPi));
+  }
+  for (const InstrumentHalfAngle& half_angle : instrument.half_angles) {
+    const bool known = half_angle.name == "source" || half_angle.name == "detector";
+    if (!known)
+      reader.Fail(fmt::format("a fitted half angle is named '{}'; allowed are source and detector", half_angle.name));
+    if (!(half_angle.value > 0 && half_angle.value <= kMostHalfAngle && half_angle.prior > 0)) {
+      reader.Fail(
+          fmt::format("the half angle of the {} is {:g} degrees with a prior of {:g}; allowed are above 0 to 30 "
+                      "and a prior above 0",
+                      half_angle.name, half_angle.value * 180 / kPi, half_angle.prior * 180 / kPi));
+    }
   }
   if (instrument.mean != "flux" && instrument.mean != "plain")
     reader.Fail(fmt::format("the mean of the instrument is '{}'; allowed are flux and plain", instrument.mean));
@@ -241,6 +253,17 @@ InstrumentUsed ReadInstrument(const Reader& reader, const Json& json, std::size_
   instrument.source = DegreesToRadians(reader.Get<double>(json, "source_deg"));
   instrument.detector = DegreesToRadians(reader.Get<double>(json, "detector_deg"));
   instrument.mean = reader.Get<std::string>(json, "mean");
+  if (json.contains("detector_across_deg"))
+    instrument.across = DegreesToRadians(reader.Get<double>(json, "detector_across_deg"));
+  if (json.contains("half_angles")) {
+    for (const Json& half_angle : reader.Member(json, "half_angles")) {
+      instrument.half_angles.push_back(
+          {reader.Get<std::string>(half_angle, "name"), DegreesToRadians(reader.Get<double>(half_angle, "value_deg")),
+           reader.GetNumbers(half_angle, "stderr_deg", kPi / 180)[0],
+           DegreesToRadians(reader.Get<double>(half_angle, "given_deg")),
+           DegreesToRadians(reader.Get<double>(half_angle, "prior_deg")), reader.Get<bool>(half_angle, "determined")});
+    }
+  }
   if (json.contains("drift")) {
     const Json& drift = reader.Member(json, "drift");
     instrument.drift = {reader.Get<double>(drift, "sd"), reader.Get<bool>(drift, "estimated")};

@@ -55,8 +55,10 @@ Json ParametersToJson(const Material& material) {
         {"unit", parameter.unit},
         {"free", fitted.free},
         {"at_bound", fitted.at_bound}};
-    if (fitted.standard_error_by_file.empty()) continue;
     Json& entry = object[parameter.json_name];
+    if (!fitted.independent_freedom.empty())
+      entry["stderr_freedom"] = Numbers(fitted.independent_freedom, parameter.per_channel, 1);
+    if (fitted.standard_error_by_file.empty()) continue;
     entry["stderr_by_file"] = Numbers(fitted.standard_error_by_file, parameter.per_channel, factor);
     entry["by_file_freedom"] = Numbers(fitted.freedom_by_file, parameter.per_channel, 1);
   }
@@ -176,6 +178,15 @@ Json InstrumentToJson(const InstrumentUsed& instrument) {
   Json json = {{"source_deg", RadiansToDegrees(instrument.source)},
                {"detector_deg", RadiansToDegrees(instrument.detector)},
                {"mean", instrument.mean}};
+  if (instrument.across > 0) json["detector_across_deg"] = RadiansToDegrees(instrument.across);
+  for (const InstrumentHalfAngle& half_angle : instrument.half_angles) {
+    json["half_angles"].push_back({{"name", half_angle.name},
+                                   {"value_deg", RadiansToDegrees(half_angle.value)},
+                                   {"stderr_deg", Number(RadiansToDegrees(half_angle.standard_error))},
+                                   {"given_deg", RadiansToDegrees(half_angle.given)},
+                                   {"prior_deg", RadiansToDegrees(half_angle.prior)},
+                                   {"determined", half_angle.determined}});
+  }
   if (instrument.drift) json["drift"] = {{"sd", instrument.drift->sd}, {"estimated", instrument.drift->estimated}};
   for (const IncidenceGain& gain : instrument.gains) {
     json["gains"].push_back({{"theta_i_deg", RadiansToDegrees(gain.theta_i)},

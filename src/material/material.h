@@ -25,6 +25,8 @@ struct FittedParameter {
   std::vector<double> standard_error_clustered;
   // Degrees of freedom of that error: 95 % within this quantile of Student's t. NaN where it is NaN.
   std::vector<double> freedom;
+  // The same of `standard_error`, whose errors are normal but where the drift of the gains was estimated. Empty: normal.
+  std::vector<double> independent_freedom = {};
   bool free = true;
   bool at_bound = false;
   // Standard error where the samples of one file of a series are taken as dependent too, and its degrees of freedom
@@ -113,12 +115,21 @@ struct InstrumentAngle {
   double value = 0, standard_error = 0, prior = 0;
   double tilt_correlation = 0;  // with a lobe's tilt, the largest; 0: no tilt is free
 };
+// A half angle that was fitted about the one that is known.
+struct InstrumentHalfAngle {
+  std::string name;  // "source", "detector"
+  double value = 0, standard_error = 0;
+  double given = 0, prior = 0;
+  bool determined = false;  // by the samples: the error is below 0.7 of the prior
+};
 struct InstrumentOffset {
   double value = 0, standard_error = 0;  // of f_r cos_theta_i, 1/sr
 };
 struct InstrumentUsed {
-  double source = 0, detector = 0;  // half angles of the discs that they fill
-  std::string mean;                 // over them, that a value is: "flux", "plain"
+  double source = 0, detector = 0;               // half angles of the discs that they fill, as fitted
+  double across = 0;                             // above 0: the detector is a rectangle, this across the meridian
+  std::vector<InstrumentHalfAngle> half_angles;  // those that were fitted
+  std::string mean;                              // over them, that a value is: "flux", "plain"
   std::optional<Drift> drift;
   std::vector<IncidenceGain> gains;  // with drift
   std::vector<InstrumentAngle> alignment;

@@ -68,7 +68,10 @@ enum class Beam { kLight, kViewer };
 // What a file states of the instrument that made it; empty: it does not.
 struct StatedInstrument {
   std::optional<double> source, detector;  // half angles of the discs that they fill, radians
-  std::optional<bool> plain_mean;          // a value is the mean of f_r, else of the flux over the mean cosines
+  // With which uncertainty (a standard deviation, radians) these are stated.
+  std::optional<double> source_prior, detector_prior;
+  std::optional<double> detector_across;  // of a rectangular detector, across the meridian
+  std::optional<bool> plain_mean;         // a value is the mean of f_r, else of the flux over the mean cosines
   bool operator==(const StatedInstrument&) const = default;
 };
 

@@ -60,8 +60,8 @@ Quantity SmithLambdaQuantity() {
   return q;
 }
 
-constexpr SmithG2Kind kG2Kinds[] = {SmithG2Kind::kSeparable, SmithG2Kind::kHeight, SmithG2Kind::kDirection,
-                                    SmithG2Kind::kHeightDirection};
+constexpr Masking kG2Kinds[] = {Masking::kSmithSeparable, Masking::kSmithHeight, Masking::kSmithDirection,
+                                Masking::kSmithHeightDirection};
 
 Quantity G2Quantity() {
   Quantity q = OfSlopes("g2", "Smith masking and shadowing of two directions", "[Heitz] eq 98-101, eq 100 corrected");
@@ -93,8 +93,8 @@ Quantity G2Quantity() {
     double dLambda_o[kSlopeParameters], dLambda_i[kSlopeParameters];
     SmithLambda(s, o, dLambda_o);
     SmithLambda(s, i, dLambda_i);
-    out[0] = SmithLambdaOfA(s.kind, ExtendedProjection(in + 1, in + 6).a);
-    out[1] = SmithLambdaOfA(s.kind, ExtendedProjection(in + 1, in + 9).a);
+    out[0] = SmithLambdaOfA(s.family, ExtendedProjection(in + 1, in + 6).a);
+    out[1] = SmithLambdaOfA(s.family, ExtendedProjection(in + 1, in + 9).a);
     out[2] = AzimuthDifference(o, i);
     out[3] = VanGinnekenLambda(out[2]);
     for (int kind = 0; kind < 4; ++kind) {

@@ -83,7 +83,7 @@ Quantity ApertureQuantity() {
       std::copy(all[k]->gradient, all[k]->gradient + kEllipsoidParameters, out + 3 + k * kEllipsoidParameters);
     }
     BrdfFactors factors;
-    out[18] = EllipsoidConductorBrdf(e, index, wo, wi, G1Kind::kClamped, nullptr, &factors);
+    out[18] = EllipsoidConductorBrdf(e, index, wo, wi, Masking::kSmithSeparable, nullptr, &factors);
     out[19] = aperture.any() ? ClosedMeanD(e, wo, wi, aperture) : means.D.value;
     out[20] = factors.clamped_i ? 1 : 0;
     out[21] = factors.clamped_o ? 1 : 0;

@@ -189,7 +189,7 @@ Quantity CoatQuantity() {
   AddDerivatives(&q, "f_refracted", "1/sr", parameters);
   AddDerivatives(&q, "f_layered", "1/sr", parameters);
   q.evaluate = [](const double* in, double* out) {
-    const SlopeDistribution slopes = {SlopeKind::kGgx, in[0], in[1], in[2], in[3], in[4]};
+    const SlopeDistribution slopes = {Family::kGgx, in[0], in[1], in[2], in[3], in[4]};
     const double f0 = in[5], albedo = in[6], ior = in[8];
     const Vec3 o = DirectionAt(in + 10), i = DirectionAt(in + 13);
     out[1] = DielectricTransmittance(o.z, ior);

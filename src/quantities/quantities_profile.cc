@@ -42,7 +42,7 @@ void AddCoefficients(Quantity* q, std::size_t count) {
   }
 }
 
-SlopeDistribution SlopesOf(const double* in) { return {SlopeKind::kGgx, in[0], in[1], in[2], in[3], in[4]}; }
+SlopeDistribution SlopesOf(const double* in) { return {Family::kGgx, in[0], in[1], in[2], in[3], in[4]}; }
 
 Profile ProfileOf(const SplinePointer& spline, const double* q) { return {spline, {q, q + spline->size()}}; }
 
@@ -68,13 +68,14 @@ Moments MomentsAt(const Profile& profile, double a) {
 }
 
 // sigma = sqrt(q) S(a) and Lambda = S / a - 1 with their derivatives by the five of the slopes and by the profile.
-struct Masking {
+struct MaskingTerms {
   ProjectedSlopes at;
   double Lambda, sigma;
   std::vector<double> dLambda, dsigma;
 };
-Masking MaskingAt(const Profile& profile, const SlopeDistribution& slopes, const Vec3& u, const ProjectedSlopes& at) {
-  Masking result = {at, 0, 0, {}, {}};
+MaskingTerms MaskingAt(const Profile& profile, const SlopeDistribution& slopes, const Vec3& u,
+                       const ProjectedSlopes& at) {
+  MaskingTerms result = {at, 0, 0, {}, {}};
   double dc[kSlopeParameters], dq[kSlopeParameters];
   ProjectSlopes(slopes, u, dc, dq);
   const double root = std::sqrt(at.q), a = std::abs(at.a);
@@ -140,7 +141,8 @@ Quantity ProfileSigmaQuantity() {
   AddDerivatives(&q, "Lambda", "1", parameters);
   q.evaluate = [](const double* in, double* out) {
     const Vec3 u = DirectionAt(in + 11);
-    const Masking m = MaskingAt(ProfileOf(DefaultSpline(), in + 5), SlopesOf(in), u, ExtendedProjection(in, in + 11));
+    const MaskingTerms m =
+        MaskingAt(ProfileOf(DefaultSpline(), in + 5), SlopesOf(in), u, ExtendedProjection(in, in + 11));
     out[0] = m.at.c;
     out[1] = m.at.q;
     out[2] = m.at.a;
@@ -182,7 +184,7 @@ Quantity ProfileBrdfQuantity() {
     std::array<double, 11> dD;
     out[0] = ProfileD(profile, slopes, Normalized(directions[0] + directions[1]), dD.data());
     double area[2], cosine[2];
-    Masking masking[2];
+    MaskingTerms masking[2];
     for (std::size_t w = 0; w < 2; ++w) {
       masking[w] = MaskingAt(profile, slopes, directions[w], ExtendedProjection(in, in + 11 + 3 * w));
       cosine[w] = directions[w].z;
@@ -294,7 +296,7 @@ Quantity StudentSigmaQuantity() {
     // The power law's, of a / sqrt(gamma - 1).
     const ProjectedSlopes scaled = {at.c, at.q * rest, at.a / scale};
     const Profile profile(PowerLawSpline(), {gamma - 2.0});
-    const Masking m = MaskingAt(profile, PowerLawSlopes(gamma, slopes), u, scaled);
+    const MaskingTerms m = MaskingAt(profile, PowerLawSlopes(gamma, slopes), u, scaled);
     out[0] = at.c;
     out[1] = at.q;
     out[2] = at.a;

@@ -212,7 +212,7 @@ Quantity BrdfQuantity() {
   q.evaluate = [](const double* in, double* out) {
     BrdfFactors f;
     out[4] = EllipsoidConductorBrdf(EllipsoidAt(in), {in[11], in[12]}, DirectionAt(in + 5), DirectionAt(in + 8),
-                                    G1Kind::kClamped, out + 7, &f);
+                                    Masking::kSmithSeparable, out + 7, &f);
     out[0] = f.D;
     out[1] = f.G1_o;
     out[2] = f.G1_i;

@@ -50,7 +50,7 @@ std::vector<std::string> ParameterNames(const Quantity& quantity);
 // Values from consecutive inputs.
 inline Ellipsoid EllipsoidAt(const double* in) { return {in[0], in[1], in[2], in[3], in[4]}; }
 inline SlopeDistribution SlopesAt(const double* in) {
-  return {in[0] == 0 ? SlopeKind::kBeckmann : SlopeKind::kGgx, in[1], in[2], in[3], in[4], in[5]};
+  return {in[0] == 0 ? Family::kBeckmann : Family::kGgx, in[1], in[2], in[3], in[4], in[5]};
 }
 // The unit vector, rounded once.
 Vec3 DirectionAt(const double* in);

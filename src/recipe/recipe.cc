@@ -40,8 +40,18 @@ std::uint16_t AlignmentRecipe::TurnOf(double azimuth) const {
 }
 
 Aperture Recipe::aperture() const {
-  return {instrument.source.value_or(0), instrument.detector.value_or(0),
-          instrument.mean.value_or(ApertureMean::kFlux)};
+  return {instrument.source.value_or(0), instrument.detector.value_or(0), instrument.mean.value_or(ApertureMean::kFlux),
+          instrument.detector_across.value_or(0)};
+}
+
+Aperture Recipe::widest_aperture() const {
+  const auto widest = [](double half_angle, const std::optional<double>& prior) {
+    return prior ? std::min(half_angle + kMostHalfAngleSigmas * *prior, kLargestHalfAngle) : half_angle;
+  };
+  Aperture discs = aperture();
+  discs.source = widest(discs.source, instrument.source_prior);
+  discs.detector = widest(discs.detector, instrument.detector_prior);
+  return discs;
 }
 
 bool Recipe::IsFree(std::size_t index) const {

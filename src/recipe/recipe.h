@@ -66,6 +66,10 @@ struct AlignmentRecipe {
 // point and a flux mean.
 struct InstrumentRecipe {
   std::optional<double> source, detector;  // half angles of their discs, radians, in [0, kLargestHalfAngle]
+  // How well these are known, a standard deviation in radians: they are then fitted. Of a disc that is not a point.
+  std::optional<double> source_prior, detector_prior;
+  // Of a rectangular detector: the half angle across the meridian, `detector` being that along it; empty: a disc.
+  std::optional<double> detector_across;
   std::optional<ApertureMean> mean;
   // Gains of the incidences, whose logarithms are normal about 0 (gains.h).
   std::optional<DriftRecipe> drift;
@@ -77,6 +81,8 @@ struct InstrumentRecipe {
   double finest_width = 0;
 };
 inline constexpr double kLargestHalfAngle = 30 * kPi / 180;
+// A half angle is fitted within so many standard deviations of what is known of it.
+inline constexpr double kMostHalfAngleSigmas = 4;
 
 struct Recipe {
   std::string name;
@@ -105,6 +111,8 @@ struct Recipe {
 
   bool IsFree(std::size_t index) const;
   Aperture aperture() const;
+  // The widest discs that a fit of half angles may come to.
+  Aperture widest_aperture() const;
 };
 
 // A recipe for `model` with every choice at its default.

@@ -45,12 +45,24 @@ std::string Quoted(const std::string& text) {
 std::string InstrumentToToml(const Recipe& recipe) {
   const InstrumentRecipe& instrument = recipe.instrument;
   std::string text;
-  if (instrument.source) text += fmt::format("source = {}\n", Degrees(*instrument.source));
-  if (instrument.detector) text += fmt::format("detector = {}\n", Degrees(*instrument.detector));
+  const auto add_disc = [&text](const char* key, const std::optional<double>& half_angle,
+                                const std::optional<double>& prior, const std::optional<double>& across) {
+    if (half_angle && !prior && !across) text += fmt::format("{} = {}\n", key, Degrees(*half_angle));
+    if (!prior && !across) return;
+    std::vector<std::string> parts;
+    if (half_angle) parts.push_back("value = " + Degrees(*half_angle));
+    if (prior) parts.push_back("prior_deg = " + Degrees(*prior));
+    if (across) parts.push_back("across = " + Degrees(*across));
+    text += fmt::format("{} = {{ {} }}\n", key, Join(parts));
+  };
+  add_disc("source", instrument.source, instrument.source_prior, {});
+  add_disc("detector", instrument.detector, instrument.detector_prior, instrument.detector_across);
   if (instrument.mean) text += fmt::format("mean = \"{}\"\n", NameOf(ApertureMeanChoices(), *instrument.mean));
   if (recipe.noise.IsKnown()) {
-    text += fmt::format("noise = {{ floor = {}, relative = {} }}\n", FormatDouble(recipe.noise.floor),
-                        FormatDouble(recipe.noise.relative));
+    const double poisson = recipe.noise.poisson;
+    text += fmt::format("noise = {{ floor = {}, relative = {}{} }}\n", FormatDouble(recipe.noise.floor),
+                        FormatDouble(recipe.noise.relative),
+                        poisson > 0 ? ", poisson = " + FormatDouble(poisson) : std::string());
   }
   if (instrument.drift)
     text += "drift = " + (instrument.drift->sd ? FormatDouble(*instrument.drift->sd) : std::string("\"auto\"")) + '\n';

@@ -69,7 +69,7 @@ bool FittedBrdf::IsAnisotropic() const {
 
 bool FittedBrdf::HasOnlyGgx() const {
   return std::all_of(lobes_.begin(), lobes_.end(),
-                     [](const FittedLobe& lobe) { return FamilyOf(lobe.choices.ndf) == NdfFamily::kGgx; });
+                     [](const FittedLobe& lobe) { return FamilyOf(lobe.choices.ndf) == Family::kGgx; });
 }
 
 bool FittedBrdf::HasDiffuse() const {

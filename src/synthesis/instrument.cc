@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lobefit/math/directions.h"
+#include "lobefit/math/quadrature.h"
 
 namespace lobefit {
 namespace {
@@ -116,10 +117,60 @@ class ApertureMeanFunction {
   std::array<std::vector<PairDirection>, kLevels> rules_;
 };
 
+// Over a flat rectangle that faces the sample, by Gauss-Legendre nodes of its plane.
+class RectangleMeanFunction {
+ public:
+  RectangleMeanFunction(BrdfFunction brdf, const Aperture& aperture, std::size_t channels, double lobe_width)
+      : brdf_(std::move(brdf)), channels_(channels), flux_(aperture.mean == ApertureMean::kFlux) {
+    const auto nodes = [lobe_width](double half_angle) {
+      constexpr int kMost = 96;
+      return std::min(kMost, 12 + static_cast<int>(std::lround(12 * half_angle / lobe_width)));
+    };
+    const double along = std::tan(aperture.detector), across = std::tan(aperture.across);
+    const QuadratureRule x = GaussLegendre(nodes(aperture.detector)), y = GaussLegendre(nodes(aperture.across));
+    for (std::size_t a = 0; a < x.nodes.size(); ++a) {
+      for (std::size_t b = 0; b < y.nodes.size(); ++b) {
+        const Vec3 at = {1, along * x.nodes[a], across * y.nodes[b]};
+        const double length = Norm(at), weight = x.weights[a] * y.weights[b] / (length * length * length);
+        points_.push_back({{at.x / length, at.y / length, at.z / length}, weight});
+        cosine_ += weight / length;
+      }
+    }
+  }
+
+  void operator()(const Vec3& wi, const Vec3& wo, double* values) const {
+    const double sine = std::hypot(wo.x, wo.y);
+    const Vec3 across = sine > 1e-9 ? Vec3{-wo.y / sine, wo.x / sine, 0} : Vec3{0, 1, 0}, along = Cross(across, wo);
+    std::vector<double> one(channels_);
+    std::fill(values, values + channels_, 0.0);
+    double above = 0;
+    for (const DiscDirection& point : points_) {
+      const Vec3 o = point.by[0] * wo + point.by[1] * along + point.by[2] * across;
+      if (!(o.z > 0)) continue;
+      brdf_(wi, o, one.data());
+      above += point.weight;
+      for (std::size_t c = 0; c < channels_; ++c) values[c] += point.weight * one[c] * (flux_ ? o.z : 1.0);
+    }
+    const double norm = flux_ ? cosine_ * wo.z : above;
+    for (std::size_t c = 0; c < channels_ && norm > 0; ++c) values[c] /= norm;
+  }
+
+ private:
+  BrdfFunction brdf_;
+  std::size_t channels_;
+  bool flux_;
+  double cosine_ = 0;  // integral of w'.w over the nodes
+  std::vector<DiscDirection> points_;
+};
+
 }  // namespace
 
 BrdfFunction WithAperture(const BrdfFunction& brdf, const Aperture& aperture, std::size_t channels, double lobe_width) {
   if (!aperture.any()) return brdf;
+  if (aperture.across > 0) {
+    const auto mean = std::make_shared<const RectangleMeanFunction>(brdf, aperture, channels, lobe_width);
+    return [mean](const Vec3& wi, const Vec3& wo, double* values) { (*mean)(wi, wo, values); };
+  }
   const auto mean = std::make_shared<const ApertureMeanFunction>(brdf, aperture, channels, lobe_width);
   return [mean](const Vec3& wi, const Vec3& wo, double* values) { (*mean)(wi, wo, values); };
 }

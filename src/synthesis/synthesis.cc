@@ -64,9 +64,9 @@ Measurement TrueMeasurement(const DirectionList& directions, const Channels& cha
   BrdfFunction seen = brdf;
   if (noise.misalignment_x != 0 || noise.misalignment_y != 0)
     seen = WithMisalignment(seen, noise.misalignment_x, noise.misalignment_y, channels.size());
-  seen =
-      WithAperture(seen, {noise.source, noise.aperture, noise.plain_mean ? ApertureMean::kPlain : ApertureMean::kFlux},
-                   channels.size(), lobe_width);
+  seen = WithAperture(
+      seen, {noise.source, noise.aperture, noise.plain_mean ? ApertureMean::kPlain : ApertureMean::kFlux, noise.across},
+      channels.size(), lobe_width);
   MeasurementBuilder builder(channels);
   std::vector<double> values(channels.size());
   for (std::size_t i = 0; i < directions.size(); ++i) {
@@ -84,8 +84,9 @@ Measurement TrueMeasurement(const DirectionList& directions, const Channels& cha
 
 Measurement Synthesise(const DirectionList& directions, const Channels& channels, const BrdfFunction& brdf,
                        const Noise& noise, std::uint64_t seed, double lobe_width) {
-  Measurement measurement = TrueMeasurement(directions, channels, brdf, noise, lobe_width);
-  AddNoise(noise, seed, &measurement);
+  const Noise drawn = DrawnNoise(noise, seed);
+  Measurement measurement = TrueMeasurement(directions, channels, brdf, drawn, lobe_width);
+  AddNoise(drawn, seed, &measurement);
   return measurement;
 }
 

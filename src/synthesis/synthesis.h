@@ -48,10 +48,13 @@ struct Noise {
   // Not random: detector and source average over discs of these half angles, radians, the flux over the mean cosines
   // or, with plain_mean, f_r itself.
   double aperture = 0, source = 0;
+  double across = 0;  // above 0: the detector is a flat rectangle with this half angle across the meridian
   bool plain_mean = false;
   // Not random: the sample is turned about x, then about y, radians; the instrument reports directions as if it were
   // not.
   double misalignment_x = 0, misalignment_y = 0;
+  // Standard deviation, radians, of a normal turn about each of x and y that a measurement draws on top of these.
+  double misalignment = 0;
 
   bool operator==(const Noise&) const = default;
 };
@@ -74,13 +77,16 @@ Noise ParseNoise(const std::string& text);
 // The terms that are not zero, in the same words.
 std::string ToText(const Noise& noise);
 
+// The noise of one measurement: what is drawn once for all its samples is drawn from `seed`, and is 0 in the result.
+Noise DrawnNoise(const Noise& noise, std::uint64_t seed);
+
 // f_r of `brdf` at the directions, with `noise` drawn from `seed`. Directions at or below the horizon are set aside,
 // holes too. `lobe_width` as for WithAperture (instrument.h).
 Measurement Synthesise(const DirectionList& directions, const Channels& channels, const BrdfFunction& brdf,
                        const Noise& noise, std::uint64_t seed, double lobe_width = 1e9);
 
 // The same in two steps, for many draws of noise on one truth: values without random terms, then the random terms of
-// `noise` on them.
+// `noise` on them. `noise` is one of a measurement (DrawnNoise).
 Measurement TrueMeasurement(const DirectionList& directions, const Channels& channels, const BrdfFunction& brdf,
                             const Noise& noise, double lobe_width = 1e9);
 void AddNoise(const Noise& noise, std::uint64_t seed, Measurement* measurement);

@@ -15,7 +15,7 @@ namespace lobefit {
 namespace {
 
 // Streams of the random terms. The first is the seed itself.
-enum Stream : std::uint64_t { kDrift = 1, kPoisson, kOutliers, kHoles };
+enum Stream : std::uint64_t { kDrift = 1, kPoisson, kOutliers, kHoles, kMisalignment };
 
 double OutsideFactor(const NoiseTerm& term) { return std::string(term.unit) == "deg" ? kPi / 180 : 1; }
 
@@ -60,10 +60,13 @@ const std::vector<NoiseTerm>& NoiseTerms() {
       {"quantisation", "1/sr", &Noise::quantisation, nullptr, 1e6, false, "step of the values"},
       {"holes", "1", &Noise::holes, nullptr, 0.99, false, "share of samples that are missing"},
       {"aperture", "deg", &Noise::aperture, nullptr, 30, false, "half angle of the detector's disc"},
+      {"across", "deg", &Noise::across, nullptr, 30, false, "half angle across of a rectangular detector"},
       {"source", "deg", &Noise::source, nullptr, 30, false, "half angle of the source's disc"},
       {"plain-mean", "flag", nullptr, &Noise::plain_mean, 1, false, "discs average f_r, not the flux"},
       {"misalignment-x", "deg", &Noise::misalignment_x, nullptr, 45, true, "turn of the sample about x"},
       {"misalignment-y", "deg", &Noise::misalignment_y, nullptr, 45, true, "turn of the sample about y"},
+      {"misalignment", "deg", &Noise::misalignment, nullptr, 10, false,
+       "standard deviation of turns about x and y, drawn once a measurement"},
   };
   return terms;
 }
@@ -111,6 +114,15 @@ std::string ToText(const Noise& noise) {
     }
   }
   return words.empty() ? "none" : Join(words, ",");
+}
+
+Noise DrawnNoise(const Noise& noise, std::uint64_t seed) {
+  Noise drawn = noise;
+  RandomNumbers random(StreamSeed(seed, kMisalignment));
+  drawn.misalignment_x += noise.misalignment * random.Normal();
+  drawn.misalignment_y += noise.misalignment * random.Normal();
+  drawn.misalignment = 0;
+  return drawn;
 }
 
 void AddNoise(const Noise& noise, std::uint64_t seed, Measurement* measurement) {

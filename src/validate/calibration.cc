@@ -16,7 +16,7 @@ constexpr double kOneSigma = 0.6826894921370859;  // probability within one stan
 constexpr double kChance = 3.290526731491926;
 
 // Errors so large are lost: 6 standard deviations of a normal distribution, and what is as rare under Student's t.
-constexpr double kLostSigmas = 6, kLost = 9.865876450376946e-10;
+constexpr double kLost = 9.865876450376946e-10;
 
 struct Moments {
   std::size_t count = 0;
@@ -78,12 +78,12 @@ EntryCalibration CalibrateEntry(const Entry& entry, std::size_t e, const std::ve
     ++result.trials;
     errors.Add(error);
     standard_errors.Add(sigma);
-    independent.Add(error, sigma, INFINITY);
+    independent.Add(error, sigma, trial.independent_freedom[e]);
     const double cluster_sigma = trial.standard_error_clustered[e];
     // Without noise the standard errors are rounding, too.
     const double rounding = 1e-9 * std::max(1.0, std::fabs(trial.truth[e]));
-    const double limit =
-        judge_clustered ? StudentTQuantile(1 - kLost, trial.freedom[e]) * cluster_sigma : kLostSigmas * sigma;
+    const double limit = judge_clustered ? StudentTQuantile(1 - kLost, trial.freedom[e]) * cluster_sigma
+                                         : StudentTQuantile(1 - kLost, trial.independent_freedom[e]) * sigma;
     if (std::fabs(error) > limit + rounding) ++result.lost;
     if (cluster_sigma > 0) clustered.Add(error, cluster_sigma, trial.freedom[e]);
   }

@@ -29,13 +29,14 @@ struct EntryCalibration {
   Entry entry;
   std::size_t trials = 0;
   std::size_t not_determined = 0;  // the fit said so: no standard error, or held at a bound
-  // More than 6 standard errors from the truth although the fit named an error (of clustered ones as many as are as
-  // rare under Student's t); Gaussian errors are so far once in 5e8.
+  // More than 6 standard errors from the truth although the fit named an error (of Student's t as many as are as rare);
+  // Gaussian errors are so far once in 5e8.
   std::size_t lost = 0;
   double bias = 0, bias_error = 0;  // mean of value - truth and its standard error, outside unit
   double spread = 0;                // standard deviation of value - truth
   double mean_error = 0;            // root mean square of the standard errors
-  // With `stderr` and the normal quantile; with `stderr_clustered` and Student's t with the fit's degrees of freedom.
+  // With `stderr` and `stderr_clustered`, each with the fit's degrees of freedom: those of the first are infinite unless
+  // a drift was estimated.
   IntervalCalibration independent, clustered;
 };
 

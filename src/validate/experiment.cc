@@ -13,12 +13,13 @@
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/measurement/incidence.h"
+#include "lobefit/measurement/prepare/pool.h"
 
 namespace lobefit {
 namespace {
 
 // Streams of one trial's seed.
-enum TrialStream : std::uint64_t { kMaterial = 100, kNoise = 101 };
+enum TrialStream : std::uint64_t { kMaterial = 100, kNoise = 101, kTurnedNoise = 102 };
 
 std::vector<Ellipsoid> Shapes(const Truth& truth) {
   std::vector<Ellipsoid> shapes;
@@ -40,13 +41,38 @@ double CostAt(const Truth& truth, const Experiment& experiment, const Measuremen
     u[layout.first_angle()] = experiment.noise.misalignment_x;
     u[layout.first_angle() + 1] = experiment.noise.misalignment_y;
   }
+  // Half angles are differences from the recipe's.
+  std::size_t next = layout.first_half_angle();
+  if (recipe.instrument.source_prior) u[next++] = experiment.noise.source - recipe.aperture().source;
+  if (recipe.instrument.detector_prior) u[next] = experiment.noise.aperture - recipe.aperture().detector;
   ThreadPool alone(1);
   return problem.Sum(layout.ToKernel(u.data()), false, &alone).sum_rho / 2;
 }
 
+// The light and the detector go where they went before: in the frame of a sample turned by half, to the other side. So
+// seen, the stage is crooked the other way.
+Measurement TurnedMeasurement(const Experiment& experiment, const Truth& truth, Noise noise, std::uint64_t seed) {
+  DirectionList directions = experiment.directions;
+  for (std::vector<Vec3>* list : {&directions.wi, &directions.wo}) {
+    for (Vec3& w : *list) w = {-w.x, -w.y, w.z};
+  }
+  noise.misalignment_x = -noise.misalignment_x;
+  noise.misalignment_y = -noise.misalignment_y;
+  Measurement measurement =
+      Synthesise(directions, {truth.channels, {}}, BrdfOf(truth), noise, seed, SmallestAlpha(truth));
+  measurement.samples.sample_azimuth.assign(measurement.samples.size(), kPi);
+  return measurement;
+}
+
 Measurement MeasurementOf(const Experiment& experiment, const Truth& truth, std::uint64_t seed) {
-  Measurement measurement = Synthesise(experiment.directions, {truth.channels, {}}, BrdfOf(truth), experiment.noise,
-                                       seed, SmallestAlpha(truth));
+  const std::uint64_t first = StreamSeed(seed, kNoise);
+  const Noise noise = DrawnNoise(experiment.noise, first);
+  Measurement measurement =
+      Synthesise(experiment.directions, {truth.channels, {}}, BrdfOf(truth), noise, first, SmallestAlpha(truth));
+  if (experiment.turned) {
+    measurement = Pool(
+        {std::move(measurement), TurnedMeasurement(experiment, truth, noise, StreamSeed(seed, kTurnedNoise))}, false);
+  }
   measurement.isotropic = experiment.isotropic;
   measurement.source = "synthetic";
   return measurement;
@@ -113,6 +139,8 @@ Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measure
       trial.standard_error.push_back(fitted.standard_error[entry.channel] / entry.factor);
       trial.standard_error_clustered.push_back(fitted.standard_error_clustered[entry.channel] / entry.factor);
       trial.freedom.push_back(fitted.freedom[entry.channel]);
+      trial.independent_freedom.push_back(
+          fitted.independent_freedom.empty() ? INFINITY : fitted.independent_freedom[entry.channel]);
       trial.free.push_back(fitted.free);
       trial.at_bound.push_back(fitted.at_bound);
       trial.truth.push_back(kNan);
@@ -129,8 +157,10 @@ Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measure
     trial.biased = std::any_of(material.remarks.begin(), material.remarks.end(), IsBiasRemark);
     trial.samples = measurement.samples.size();
     trial.incidences = GroupByIncidence(measurement).wi.size();
-    // A fit that chose another metric, or estimated the noise that its own needs, minimised another cost.
-    const bool comparable = same && material.metric == NameOf(MetricChoices(), experiment.recipe.metric) &&
+    // A fit that chose another metric, or estimated the noise that its own needs, minimised another cost; where the
+    // sample stood was drawn.
+    const bool comparable = same && experiment.noise.misalignment == 0 && !experiment.turned &&
+                            material.metric == NameOf(MetricChoices(), experiment.recipe.metric) &&
                             RowOf(experiment.recipe.metric).curve != Curve::kAsinh;
     trial.cost_at_truth = comparable ? CostAt(truth, experiment, measurement) : kNan;
     trial.difference = same ? DifferenceFrom(truth, material) : kNan;
@@ -147,7 +177,7 @@ Trial RunTrial(const Experiment& experiment, std::size_t index) {
     RandomNumbers random(StreamSeed(seed, kMaterial));
     truth = DrawMaterial(*experiment.range, truth, &random);
   }
-  return CompareWithTruth(experiment, truth, MeasurementOf(experiment, truth, StreamSeed(seed, kNoise)));
+  return CompareWithTruth(experiment, truth, MeasurementOf(experiment, truth, seed));
 }
 
 void RunTrials(const Experiment& experiment, const std::vector<std::size_t>& indices, int threads,

@@ -22,6 +22,9 @@ struct Experiment {
   std::optional<MaterialRange> range;
   DirectionList directions;
   bool isotropic = false;  // the layout cannot express a dependence on azimuth
+  // Every measurement is made a second time with the sample turned by 180 degrees on its stage, where it stands crooked
+  // as before: two files of one fit.
+  bool turned = false;
   Noise noise;
   Recipe recipe;  // what is fitted
   FitOptions fit;
@@ -34,6 +37,7 @@ struct Trial {
   std::string error;          // not empty: the fit refused the measurement
   std::vector<double> truth;  // NaN for entries that the truth's model does not have
   std::vector<double> value, standard_error, standard_error_clustered, freedom;
+  std::vector<double> independent_freedom;  // of standard_error
   std::vector<bool> free, at_bound;
   bool converged = false, determined = false;
   std::vector<std::string> degenerate;

@@ -176,7 +176,7 @@ MeasurementLayout MakeLayout(const LayoutRequest& request, const Truth& truth) {
 }
 
 void RequireApertureWithin(const MeasurementLayout& layout, const Noise& noise) {
-  const double widest = std::max(noise.aperture, noise.source);
+  const double widest = std::max({noise.aperture, noise.source, noise.across});
   if (!(widest > kMostSteps * layout.step * (1 + 1e-9))) return;
   throw UsageError(fmt::format(
       "a disc of half angle {:.3g} degrees is more than {:g} times the step of the grid, {:.3g} degrees, so that its "

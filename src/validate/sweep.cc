@@ -146,11 +146,23 @@ void Turn(const std::string& name, const std::string& value, ExperimentRequest* 
 Experiment MakeExperiment(const ExperimentRequest& request) {
   const MeasurementLayout layout = MakeLayout(request.layout, request.truth);
   RequireApertureWithin(layout, request.noise);
+  if (request.noise.across > 0 && (request.noise.source > 0 || !(request.noise.aperture > 0))) {
+    throw UsageError(
+        "noise term 'across' makes a rectangle of the detector that 'aperture' is along the meridian, before a source "
+        "that "
+        "is a point; give aperture, and leave source out");
+  }
+  if (request.turned && layout.isotropic) {
+    throw UsageError(
+        fmt::format("layout '{}' has no place for a turn of the sample; take another one, or leave --turned out",
+                    request.layout.name));
+  }
   Experiment experiment;
   experiment.truth = request.truth;
   experiment.range = request.range;
   experiment.directions = layout.directions;
   experiment.isotropic = layout.isotropic;
+  experiment.turned = request.turned;
   experiment.noise = request.noise;
   experiment.recipe = request.recipe;
   experiment.fit = request.fit;

@@ -15,6 +15,7 @@ struct ExperimentRequest {
   Truth truth;
   std::optional<MaterialRange> range;
   LayoutRequest layout;
+  bool turned = false;
   Noise noise;
   Recipe recipe;
   // The fitted model follows the truth's where a sweep changes it.
@@ -24,7 +25,7 @@ struct ExperimentRequest {
 };
 
 // Throws UsageError where the parts do not go together: an aperture wider than the layout's grid, an isotropic layout
-// of an anisotropic model.
+// of an anisotropic model, a turned sample of a layout that has lost it.
 Experiment MakeExperiment(const ExperimentRequest& request);
 
 // What can be swept: a parameter of the truth by its name in documents (`alpha_x`, `theta_y_deg`), `alpha` (alpha_x

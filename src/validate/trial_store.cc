@@ -49,6 +49,7 @@ Trial TrialOf(const Json& line) {
   trial.standard_error = NumbersOf(line.at("stderr"));
   trial.standard_error_clustered = NumbersOf(line.at("stderr_clustered"));
   trial.freedom = NumbersOf(line.at("freedom"));
+  trial.independent_freedom = NumbersOf(line.at("stderr_freedom"));
   trial.free = line.at("free").get<std::vector<bool>>();
   trial.at_bound = line.at("at_bound").get<std::vector<bool>>();
   trial.converged = line.at("converged").get<bool>();
@@ -75,10 +76,10 @@ std::filesystem::path SegmentsOf(const std::filesystem::path& folder) {
 }  // namespace
 
 std::string KeyOf(const Experiment& experiment) {
-  std::string text =
-      fmt::format("lobefit {}\n{}\n{}\n{}\nseed {} starts {} isotropic {} drawn {}\n", Version(),
-                  ToJson(MaterialOf(experiment.truth)), ToText(experiment.noise), ToToml(experiment.recipe),
-                  experiment.seed, experiment.fit.starts, experiment.isotropic, experiment.range.has_value());
+  std::string text = fmt::format("lobefit {}\n{}\n{}\n{}\nseed {} starts {} isotropic {} drawn {} turned {}\n",
+                                 Version(), ToJson(MaterialOf(experiment.truth)), ToText(experiment.noise),
+                                 ToToml(experiment.recipe), experiment.seed, experiment.fit.starts,
+                                 experiment.isotropic, experiment.range.has_value(), experiment.turned);
   // The numbers themselves, not as text, which would take 200 bytes a pair.
   for (const std::vector<Vec3>* side : {&experiment.directions.wi, &experiment.directions.wo})
     text += Sha256Hex({reinterpret_cast<const char*>(side->data()), side->size() * sizeof(Vec3)});
@@ -118,7 +119,9 @@ std::vector<Trial> TrialStore::Read(std::size_t count) const {
   return trials;
 }
 
-void TrialStore::Append(std::size_t index, const Trial& trial) { journal_.Append(ToLine(key_, index, trial), true); }
+void TrialStore::Append(std::size_t index, const Trial& trial) { journal_.Commit(ToLine(key_, index, trial), {}); }
+
+void TrialStore::Close() { journal_.Close(); }
 
 std::string ToLine(const std::string& key, std::size_t index, const Trial& trial) {
   const Json line = {{"key", key},
@@ -129,6 +132,7 @@ std::string ToLine(const std::string& key, std::size_t index, const Trial& trial
                      {"stderr", Numbers(trial.standard_error)},
                      {"stderr_clustered", Numbers(trial.standard_error_clustered)},
                      {"freedom", Numbers(trial.freedom)},
+                     {"stderr_freedom", Numbers(trial.independent_freedom)},
                      {"free", trial.free},
                      {"at_bound", trial.at_bound},
                      {"converged", trial.converged},

@@ -23,8 +23,10 @@ class TrialStore {
   // Trials [0, count); those that the folder does not hold come back as not done. Lines that were cut short by a death
   // are passed over. Throws UsageError where the folder holds trials of another validation.
   std::vector<Trial> Read(std::size_t count) const;
-  // From any thread; on the disk after a second at most. Throws OutputError.
+  // From any thread; outlives this process at once, and is on the disk a moment later. Throws OutputError.
   void Append(std::size_t index, const Trial& trial);
+  // Brings all to the disk. Throws OutputError. Nothing may be appended after it.
+  void Close();
 
  private:
   std::filesystem::path folder_;

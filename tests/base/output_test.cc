@@ -15,6 +15,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
+#include "lobefit/base/file_group.h"
 #include "lobefit/base/pending_file.h"
 
 namespace lobefit {
@@ -188,6 +189,46 @@ TEST_F(OutputTest, HasNoNameOrOneNobodyGuessesUntilItIsWhole) {
     for (const std::string& name : Files()) EXPECT_THAT(name, testing::MatchesRegex("\\.lobefit-[0-9a-f]+"));
   }
   EXPECT_TRUE(Files().empty());
+}
+
+TEST_F(OutputTest, AGroupHasNoNamesUntilAllIsOnTheDisk) {
+  Write("old", "before");
+  ASSERT_EQ(chmod((folder_ / "old").c_str(), 0640), 0);
+  {
+    FileGroup group, more;
+    group.Add(folder_ / "new", "text");
+    group.Add(folder_ / "old", "after");
+    more.Add(folder_ / "last", "words");
+    group.Take(std::move(more));
+    for (const std::string& name : Files())
+      EXPECT_TRUE(name == "old" || name.starts_with(".lobefit-")) << name << " is there already";
+    EXPECT_EQ(Read("old"), "before");
+    group.Commit();
+    EXPECT_EQ(Read("new") + Read("old") + Read("last"), "textafterwords");
+    EXPECT_EQ(Status("old").st_mode & 0777, 0640U);
+    group.Add(folder_ / "never", "committed");
+  }
+  EXPECT_THAT(Files(), testing::UnorderedElementsAre("new", "old", "last"));
+}
+
+TEST_F(OutputTest, AGroupSaysWhatCannotBeWritten) {
+  std::filesystem::create_directories(folder_ / "a");
+  std::filesystem::create_directories(folder_ / "taken");
+  FileGroup group;
+  EXPECT_THROW(group.Add(folder_ / "none" / "f", "x"), OutputError);
+  EXPECT_THROW(group.Add("/dev/null", "x"), OutputError);
+  EXPECT_THROW(group.Add(folder_ / "taken", "x"), OutputError);
+  group.Add(folder_ / "a" / "first", "x");
+  group.Add(folder_ / "a" / "second", "x");
+  // A folder takes the name meanwhile.
+  std::filesystem::create_directories(folder_ / "a" / "second");
+  try {
+    group.Commit();
+    FAIL() << "committed";
+  } catch (const OutputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("second"));
+  }
+  EXPECT_EQ(Read("a/first"), "x");
 }
 
 // The signal comes while a file is half written.

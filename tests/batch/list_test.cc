@@ -8,6 +8,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/batch/list/inputs.h"
 #include "lobefit/batch/list/manifest.h"
+#include "lobefit/batch/list/series.h"
 #include "lobefit/batch/list/shard.h"
 #include "lobefit/batch/list/work_list.h"
 
@@ -49,9 +50,20 @@ TEST(Manifest, RefusesWithLineAndCure) {
       {"file,status\na,b\n", "column 'status' is one of the results' own; rename it"},
       {"file,x\na,b\nc\n", "line 3: has 1 fields, the header has 2"},
       {"file,x\n,b\n", "line 2: names no file"},
-      {"file\n..\n", "line 2: '..' names a folder; a row names a file"}};
+      {"file\n..\n", "line 2: '..' holds no beginning that the results can be named by; give the row an id"},
+      {"file\na.csv;b.csv\n", "line 2: 'a.csv;b.csv' holds no beginning"},
+      {"file\nx1.csv;x2.csv;x1.csv\n", "line 2: 'x1.csv' is named twice"},
+      {"file,id\nscan_*.csv,a\n", "line 2: 'scan_*.csv' matches no file"}};
   for (const auto& [text, message] : cases)
     EXPECT_THAT([text = text] { Parse(text); }, ThrowsMessage<InputError>(HasSubstr(message))) << text;
+}
+
+TEST(Manifest, SeriesAreNamedByWhatTheirNamesShare) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"blue/scan_*.csv", "blue/scan"},     {"blue/*.csv", "blue"},
+      {"blue/10.csv; blue/20.csv", "blue"}, {"a/x_1.csv:theta_i=1;a/x_2.csv:theta_i=2", "a/x"},
+      {"scan.csv:theta_i=30", "scan.csv"},  {"*.csv", ""}};
+  for (const auto& [cell, id] : cases) EXPECT_EQ(SeriesId(cell), id) << cell;
 }
 
 TEST(Manifest, IsToldFromAMeasurement) {
@@ -102,6 +114,34 @@ TEST_F(InputsTest, SearchesFoldersByContent) {
   EXPECT_EQ(inputs.skipped, 3U);
 }
 
+TEST_F(InputsTest, ARowMayBeASeries) {
+  for (const char* name : {"s[1]/scan_2.csv", "s[1]/scan_10.csv", "s[1]/other.csv", "s[1]/notes.md", "a;b.csv"})
+    Put(name, std::string(name).ends_with("md") ? "hello" : kCsv);
+  const auto members = [&](const std::string& cell) {
+    Put("list.csv", "file,id\n\"" + cell + "\",x\n");
+    const Inputs inputs = Gather({"list.csv"});
+    const Task& task = inputs.list.tasks.at(0);
+    EXPECT_EQ(task.path, task.members.empty() ? folder_ / cell : folder_);
+    const std::uint64_t files = std::max<std::size_t>(1, task.members.size());
+    EXPECT_EQ(task.bytes, files * std::string(kCsv).size());
+    return task.members;
+  };
+  EXPECT_THAT(members("s[1]"), ElementsAre("s[1]/other.csv", "s[1]/scan_10.csv", "s[1]/scan_2.csv"));
+  EXPECT_THAT(members("s[[]1]/scan_*"), ElementsAre("s[1]/scan_10.csv", "s[1]/scan_2.csv"));
+  EXPECT_THAT(members("s[1]/scan_2.csv:theta_i=5; s[1]/other.csv"),
+              ElementsAre("s[1]/scan_2.csv:theta_i=5", "s[1]/other.csv"));
+  EXPECT_THAT(members("a;b.csv"), ElementsAre());
+  Put("list.csv", "file,id\ns[1]/scan_2.csv:theta_i=5,x\n");
+  Inputs one = Gather({"list.csv"});
+  Put("list.csv", "file,id\ns[1]/scan_2.csv:theta_i=6,x\n");
+  Inputs other = Gather({"list.csv"});
+  for (Inputs* inputs : {&one, &other}) SetSettings([](const OptionWords&) { return "s"; }, &inputs->list);
+  EXPECT_NE(one.list.tasks[0].settings, other.list.tasks[0].settings);
+  StoreWorkList(one.list, folder_ / "out");
+  EXPECT_EQ(ReadWorkList(folder_ / "out").tasks[0].members, one.list.tasks[0].members);
+  EXPECT_THROW(StoreWorkList(other.list, folder_ / "out"), UsageError);
+}
+
 TEST_F(InputsTest, LeavesItsOwnResultsOut) {
   Put("a.csv", kCsv);
   Put("out/documents/copy.csv", kCsv);
@@ -136,6 +176,16 @@ TEST_F(InputsTest, RefusesIdsThatAreNoRelativePath) {
   }
   Put("list.csv", "file,id\nx.csv," + std::string(201, 'a') + "\n");
   EXPECT_THAT([&] { Gather({"list.csv"}); }, Throws<InputError>());
+}
+
+TEST_F(InputsTest, RefusesAnIdInTheWayOfAnothersResults) {
+  Put("x.csv", kCsv);
+  Put("y.csv", kCsv);
+  Put("list.csv", "file,id\nx.csv,a.material.json/b/c\ny.csv,a\n");
+  EXPECT_THAT([&] { Gather({"list.csv"}); },
+              ThrowsMessage<InputError>(testing::AllOf(HasSubstr("line 2"), HasSubstr("'a' ("), HasSubstr("line 3"))));
+  Put("list.csv", "file,id\nx.csv,a/b\ny.csv,a\n");
+  EXPECT_EQ(Gather({"list.csv"}).list.tasks.size(), 2U);
 }
 
 TEST_F(InputsTest, RefusesNamesThatAreNotThereAndEmptyFolders) {

@@ -22,7 +22,7 @@ DoneRecord Done(const std::string& id, TaskStatus status, double at, const std::
   done.settings = "s";
   done.status = status;
   done.at = at;
-  done.stamp = {5, 1234567890123456789, 3};
+  done.stamps = {{5, 1234567890123456789, 3}, {6, 0, 4}};
   done.message = "a \"quoted\" ,\"row\":{ message";
   if (status == TaskStatus::kFitted) done.row = R"({"verdict":null,"alpha_x":0.125})";
   return done;
@@ -37,20 +37,113 @@ class RecordsTest : public ProgramTest {
 TEST_F(RecordsTest, ComeBackAsTheyWereWritten) {
   {
     Journal journal(Segments());
-    journal.Append(ToLine(StartRecord{"a/\xC3\xA4", 1, 0}), false);
-    journal.Append(ToLine(Done("a/\xC3\xA4", TaskStatus::kFitted, 2)), true);
-    journal.Append(ToLine(Done("b", TaskStatus::kFailed, 3)), true);
+    journal.Append(ToLine(StartRecord{"a/\xC3\xA4", 1, 0}));
+    journal.Commit(ToLine(Done("a/\xC3\xA4", TaskStatus::kFitted, 2)), {});
+    journal.Commit(ToLine(Done("b", TaskStatus::kFailed, 3)), {});
   }
   const Records records = ReadRecords(folder_, 2);
   ASSERT_EQ(records.segments.size(), 1U);
   EXPECT_EQ(records.segments[0].lines_lost, 0U);
   ASSERT_EQ(records.done.size(), 2U);
   EXPECT_EQ(records.done[0].id, "a/\xC3\xA4");
-  EXPECT_EQ(records.done[0].row, R"({"verdict":null,"alpha_x":0.125})");
+  RowReader rows(records);
+  EXPECT_EQ(rows.Read(records.done[0]), R"({"verdict":null,"alpha_x":0.125})");
+  EXPECT_EQ(rows.Read(records.done[1]), "");
   EXPECT_EQ(records.done[0].message, "a \"quoted\" ,\"row\":{ message");
-  EXPECT_EQ(records.done[0].stamp, (FileStamp{5, 1234567890123456789, 3}));
-  EXPECT_EQ(records.done[1].row, "");
+  EXPECT_THAT(records.done[0].stamps, testing::ElementsAre(FileStamp{5, 1234567890123456789, 3}, FileStamp{6, 0, 4}));
   EXPECT_EQ(NameOf(records.done[1].status), "failed");
+}
+
+TEST_F(RecordsTest, ALineIsThereAfterItsFilesAndBothTogether) {
+  Journal journal(Segments());
+  for (int i = 0; i < 200; ++i) {
+    const std::string id = std::to_string(i);
+    FileGroup files;
+    files.Add(folder_ / id, id);
+    journal.Commit(ToLine(Done(id, TaskStatus::kFitted, i)), std::move(files));
+    const Records records = ReadRecords(folder_, 1);
+    // A whole group at most is on its way.
+    EXPECT_GE(records.done.size() + 64, static_cast<std::size_t>(i + 1));
+    for (const DoneRecord& done : records.done) ASSERT_EQ(ReadWholeFile(folder_ / done.id), done.id);
+  }
+  journal.Close();
+  EXPECT_EQ(ReadRecords(folder_, 1).done.size(), 200U);
+}
+
+TEST_F(RecordsTest, AFileThatCannotBePlacedLeavesNoLineAndIsSaid) {
+  Journal journal(Segments());
+  FileGroup files;
+  files.Add(folder_ / "taken", "x");
+  std::filesystem::create_directories(folder_ / "taken");
+  journal.Commit(ToLine(Done("a", TaskStatus::kFitted, 1)), std::move(files));
+  EXPECT_THROW(journal.Close(), OutputError);
+  EXPECT_TRUE(ReadRecords(folder_, 1).done.empty());
+}
+
+TEST_F(RecordsTest, AFailureOfAGroupEndsTheNextCommit) {
+  Journal journal(Segments());
+  FileGroup files;
+  files.Add(folder_ / "taken", "x");
+  std::filesystem::create_directories(folder_ / "taken");
+  journal.Commit(ToLine(Done("a", TaskStatus::kFitted, 1)), std::move(files));
+  const auto commit_more = [&] {
+    for (int i = 0; i < 1000; ++i) journal.Commit(ToLine(Done("b", TaskStatus::kFitted, 1)), {});
+  };
+  EXPECT_THROW(commit_more(), OutputError);
+}
+
+TEST_F(RecordsTest, ALineWithoutFilesIsThereAtOnce) {
+  Journal journal(Segments());
+  journal.Commit(ToLine(Done("a", TaskStatus::kFailed, 1)), {});
+  EXPECT_EQ(ReadRecords(folder_, 1).done.size(), 1U);
+}
+
+TEST_F(RecordsTest, APictureBelongsToTheNextLine) {
+  DoneRecord with = Done("a", TaskStatus::kFitted, 1), without = Done("b", TaskStatus::kFitted, 1);
+  with.picture = "iVBOR+/=";
+  with.picture_is_measured = true;
+  EXPECT_EQ(DoneFromLine(ToLine(with)).picture, with.picture);
+  EXPECT_EQ(DoneFromLine(ToLine(with)).row, with.row);
+  {
+    Journal journal(Segments());
+    journal.Commit(ToLine(with), {});
+    journal.Commit(ToLine(without), {});
+  }
+  const std::string whole = ReadWholeFile(OnlySegment());
+  for (const bool cut : {false, true}) {
+    // A picture that lost its end is none, and no line of another task.
+    if (cut) WriteWholeFile(OnlySegment(), std::string(whole).replace(whole.find("+/=\"}"), 5, ""));
+    const Records records = ReadRecords(folder_, 1);
+    RowReader reader(records);
+    ASSERT_EQ(records.done.size(), 2U);
+    EXPECT_EQ(reader.ReadPicture(records.done[0]), cut ? "" : "iVBOR+/=");
+    EXPECT_EQ(reader.ReadPicture(records.done[1]), "");
+    EXPECT_EQ(reader.Read(records.done[0]), with.row);
+    EXPECT_EQ(records.segments[0].lines_lost, cut ? 1U : 0U);
+    EXPECT_TRUE(cut || records.done[0].picture_is_measured);
+  }
+}
+
+TEST_F(RecordsTest, ReadsLongSegmentsInPieces) {
+  std::filesystem::create_directories(Segments());
+  std::string text;
+  constexpr int kCount = 12000;  // 9 MB
+  for (int i = 0; i < kCount; ++i) {
+    DoneRecord done = Done(std::to_string(i), TaskStatus::kFitted, i);
+    done.row =
+        "{\"x\":" + std::to_string(i) + ",\"y\":\"" + std::string(static_cast<std::size_t>(i % 997), 'y') + "\"}";
+    text += ToLine(done) + "\n";
+  }
+  WriteWholeFile(Segments() / "long.jsonl", text);
+  const Records records = ReadRecords(folder_, 3);
+  ASSERT_EQ(records.done.size(), static_cast<std::size_t>(kCount));
+  EXPECT_EQ(records.segments[0].lines_lost, 0U);
+  RowReader reader(records);
+  for (int i = 0; i < kCount; i += 7) {
+    const DoneRecord& done = records.done[static_cast<std::size_t>(i)];
+    EXPECT_EQ(done.id, std::to_string(i));
+    EXPECT_TRUE(reader.Read(done).starts_with("{\"x\":" + done.id + ","));
+  }
 }
 
 TEST_F(RecordsTest, WritesNoFileWithoutALine) {
@@ -62,8 +155,8 @@ TEST_F(RecordsTest, EachJournalHasAFileOfItsOwn) {
   {
     Journal a(Segments()), b(Segments());
     EXPECT_NE(a.name(), b.name());
-    a.Append(ToLine(Done("a", TaskStatus::kFitted, 1)), true);
-    b.Append(ToLine(Done("b", TaskStatus::kFitted, 1)), true);
+    a.Commit(ToLine(Done("a", TaskStatus::kFitted, 1)), {});
+    b.Commit(ToLine(Done("b", TaskStatus::kFitted, 1)), {});
   }
   EXPECT_EQ(ReadRecords(folder_, 1).segments.size(), 2U);
 }
@@ -71,7 +164,7 @@ TEST_F(RecordsTest, EachJournalHasAFileOfItsOwn) {
 TEST_F(RecordsTest, PassesOverLinesThatWereCutShort) {
   {
     Journal journal(Segments());
-    for (int i = 0; i < 5; ++i) journal.Append(ToLine(Done("t" + std::to_string(i), TaskStatus::kFitted, i)), true);
+    for (int i = 0; i < 5; ++i) journal.Commit(ToLine(Done("t" + std::to_string(i), TaskStatus::kFitted, i)), {});
   }
   const std::string whole = ReadWholeFile(OnlySegment());
   std::size_t seen = 0;
@@ -91,9 +184,9 @@ TEST_F(RecordsTest, PassesOverLinesThatWereCutShort) {
 TEST_F(RecordsTest, TasksOfAProcessThatIsGoneCountAsDeaths) {
   {
     Journal journal(Segments());
-    journal.Append(ToLine(StartRecord{"done", 1, 0}), false);
-    journal.Append(ToLine(StartRecord{"begun", 2, 0}), false);
-    journal.Append(ToLine(Done("done", TaskStatus::kFailed, 3)), true);
+    journal.Append(ToLine(StartRecord{"done", 1, 0}));
+    journal.Append(ToLine(StartRecord{"begun", 2, 0}));
+    journal.Commit(ToLine(Done("done", TaskStatus::kFailed, 3)), {});
     // This process still runs.
     EXPECT_TRUE(ReadRecords(folder_, 1).deaths.empty());
   }
@@ -103,6 +196,16 @@ TEST_F(RecordsTest, TasksOfAProcessThatIsGoneCountAsDeaths) {
   const Records records = ReadRecords(folder_, 1);
   ASSERT_EQ(records.deaths.size(), 1U);
   EXPECT_EQ(records.deaths.at("begun")[0].at, 2);
+}
+
+TEST_F(RecordsTest, ATaskThatItsProcessOutlivedIsNoDeath) {
+  std::filesystem::create_directories(Segments());
+  WriteWholeFile(Segments() / "x.jsonl",
+                 ToLine(StartRecord{"a", 1, 0}) + "\n" + ToLine(StartRecord{"b", 1, 0}) + "\n" + EndedLine("a") + "\n");
+  const Records records = ReadRecords(folder_, 1);
+  EXPECT_TRUE(records.done.empty());
+  EXPECT_EQ(records.deaths.size(), 1U);
+  EXPECT_TRUE(records.deaths.contains("b"));
 }
 
 TEST_F(RecordsTest, TheBestOfOneKeyCountsElseTheLast) {
@@ -167,7 +270,7 @@ TEST(Writers, OneThatIsDeadAndNotWaitedForDoesNotRun) {
 TEST_F(RecordsTest, SaysWhereNothingCanBeWritten) {
   WriteWholeFile(folder_ / "file", "");
   Journal journal(folder_ / "file" / "segments");
-  EXPECT_THROW(journal.Append("{}", true), OutputError);
+  EXPECT_THROW(journal.Append("{}"), OutputError);
 }
 
 }  // namespace

@@ -1,4 +1,7 @@
 #include <filesystem>
+#include <iterator>
+#include <map>
+#include <sstream>
 
 #include "tests/batch/batch_test.h"
 #include "tests/support/schema.h"
@@ -29,8 +32,9 @@ TEST_F(BatchVerb, FitsAFolderAndGoesOn) {
        {"verdict", "typical_error", "noise", "key", "recipe", "error.log", "f0[R].stderr_clustered"})
     EXPECT_TRUE(table.at("m000.csv").contains(column)) << column;
   EXPECT_TRUE(FollowsSchema(ReadWholeFile(folder_ / "out/documents/m004.csv.material.json")));
-  for (const char* file : {"index.html", "runs.csv", "results.jsonl", "documents/m002.csv.sphere.png"})
+  for (const char* file : {"index.html", "runs.csv", "results.jsonl"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
+  EXPECT_THAT(ReadWholeFile(folder_ / "out/index.html"), HasSubstr("{\"measured\":false,\"png\":\"iVBORw0KGgo"));
   const std::string before = ReadWholeFile(folder_ / "out/results.csv");
   result = Shell("lobefit batch data --out out");
   EXPECT_EQ(result.exit_code, 0);
@@ -82,6 +86,53 @@ TEST_F(BatchVerb, ManifestsBringOptionsIdsAndColumns) {
   EXPECT_THAT(table.at("one").at("model"), HasSubstr("beckmann"));
   EXPECT_THAT(table.at("two").at("model"), HasSubstr("ggx"));
   EXPECT_NE(table.at("two").at("samples_used"), table.at("data/m001.csv").at("samples_used"));
+}
+
+// One file an incidence, as a goniometer leaves them.
+TEST_F(BatchVerb, ASeriesIsOneTask) {
+  const std::string whole = ReadWholeFile(std::filesystem::path(test::SourceDir()) / "samples" / "satin_plastic.csv");
+  std::filesystem::create_directories(folder_ / "blue");
+  std::map<std::string, std::string> parts;
+  std::istringstream lines(whole);
+  std::string head, line;
+  while (std::getline(lines, line)) {
+    if (line.empty() || line[0] == '#' || line[0] > '9') {
+      head += line + "\n";
+    } else {
+      parts[line.substr(0, line.find(','))] += line + "\n";
+    }
+  }
+  ASSERT_GT(parts.size(), 2U);
+  for (const auto& [incidence, rows] : parts)
+    WriteWholeFile(folder_ / "blue" / ("i" + incidence + ".csv"), head + rows);
+  WriteWholeFile(folder_ / "list.csv", "file,lab\nblue,A\nblue/i*.csv,B\n\"none/x1.csv;none/x2.csv\",C\n");
+  EXPECT_EQ(Shell("lobefit batch list.csv --recipe ggx --out out").exit_code, 3) << "the rows are the same files";
+  WriteWholeFile(folder_ / "list.csv", "file,lab\nblue,A\n\"none/x1.csv;none/x2.csv\",C\n");
+  const ProgramResult result = Shell("lobefit batch list.csv --recipe ggx --out out");
+  EXPECT_EQ(result.exit_code, 4) << result.err;
+  auto table = Table("out/results.csv");
+  ASSERT_EQ(table.size(), 2U);
+  EXPECT_EQ(table.at("none/x").at("status"), "failed");
+  EXPECT_THAT(table.at("none/x").at("message"), AllOf(HasSubstr("none/x1.csv"), Not(HasSubstr(folder_.string()))));
+  ASSERT_EQ(Shell("lobefit fit blue --recipe ggx --no-report --name fit").exit_code, 0);
+  const nlohmann::json alone = nlohmann::json::parse(ReadWholeFile(folder_ / "fit.material.json")),
+                       batch = nlohmann::json::parse(ReadWholeFile(folder_ / "out/documents/blue.material.json"));
+  EXPECT_EQ(alone["parameters"], batch["parameters"]);
+  EXPECT_EQ(alone["source"]["sha256"], batch["source"]["sha256"]);
+  // Any of the files decides; the same ones give the same.
+  EXPECT_THAT(Shell("lobefit batch list.csv --recipe ggx --out out --dry-run").out, HasSubstr("2 done, 0 to do"));
+  EXPECT_EQ(Shell("echo blue | lobefit batch - --recipe ggx --out listed").exit_code, 0);
+  EXPECT_EQ(Table("listed/results.csv").at("blue").at("sha256"), batch["source"]["sha256"]);
+  EXPECT_THAT(Shell("printf 'a\\0b\\0' | lobefit batch - --out none").err, HasSubstr("line 1: holds a zero byte"));
+  EXPECT_THAT(Shell("mkdir empty; echo empty | lobefit batch - --out none").err,
+              HasSubstr("line 1: 'empty' is a folder without measurement files"));
+  std::filesystem::remove(folder_ / "blue" / ("i" + parts.begin()->first + ".csv"));
+  EXPECT_THAT(Shell("lobefit batch list.csv --recipe ggx --out out --dry-run").out, HasSubstr("1 done, 1 to do"));
+  WriteWholeFile(folder_ / "blue" / "notes.txt", "hello");
+  const std::string rest = "blue/i" + std::next(parts.begin())->first + ".csv";
+  WriteWholeFile(folder_ / rest, ReadWholeFile(folder_ / rest) + "\n");
+  EXPECT_THAT(Shell("echo blue | lobefit batch - --recipe ggx --out listed --dry-run").out,
+              HasSubstr("0 done, 1 to do"));
 }
 
 TEST_F(BatchVerb, RefusesBadInputBeforeAnythingRuns) {

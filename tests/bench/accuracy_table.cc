@@ -255,7 +255,7 @@ std::vector<Sweep> Sweeps() {
        [](std::mt19937_64* random) {
          std::normal_distribution<double> gauss;
          SlopeDistribution s;
-         s.kind = Uniform(random, 0, 1) < 0.5 ? SlopeKind::kBeckmann : SlopeKind::kGgx;
+         s.family = Uniform(random, 0, 1) < 0.5 ? Family::kBeckmann : Family::kGgx;
          s.alpha_x = LogUniform(random, 1e-3, 3);
          s.alpha_y = LogUniform(random, 1e-3, 3);
          s.r = Uniform(random, -0.99, 0.99);
@@ -270,7 +270,7 @@ std::vector<Sweep> Sweeps() {
          const double sum = std::fabs(s.alpha_x * g[0]) + std::fabs(s.alpha_y * g[1]) + std::fabs(s.r * g[2]) +
                             std::fabs(s.slope_x * g[3]) + std::fabs(s.slope_y * g[4]) + std::fabs(m.x * dm.x) +
                             std::fabs(m.y * dm.y) + std::fabs(m.z * dm.z);
-         return Sample{value, SlopeDistributionDFormula(s.kind, p.data(), Long(m)), std::fmax(1, sum / value)};
+         return Sample{value, SlopeDistributionDFormula(s.family, p.data(), Long(m)), std::fmax(1, sum / value)};
        }});
   return sweeps;
 }

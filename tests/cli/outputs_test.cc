@@ -29,6 +29,17 @@ TEST_F(Outputs, AnInputIsNeverOverwritten) {
   EXPECT_EQ(ReadWholeFile(folder_ / "m.material.json"), material);
 }
 
+// Files are made in --out and nowhere else; said before the work, with nothing made.
+TEST_F(Outputs, ANameIsNoPath) {
+  ASSERT_EQ(Shell("cp $SOURCE/samples/satin_plastic.csv . && mkdir a").exit_code, 0);
+  for (const std::string verb : {"fit satin_plastic.csv --recipe ggx", "compare satin_plastic.csv --recipes ggx"}) {
+    const ProgramResult result = Shell("lobefit " + verb + " --no-report --out new --name ../a/x");
+    EXPECT_EQ(result.exit_code, 2) << verb << result.err;
+    EXPECT_THAT(result.err, testing::HasSubstr("is a path; the folder is given by --out")) << verb;
+  }
+  EXPECT_EQ(Files(), (std::vector<std::string>{"a", "satin_plastic.csv"}));
+}
+
 // Names that end a string in the language of some target.
 TEST_F(Outputs, ExportsOfAnyNameAreReadBack) {
   ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ggx --no-report --name m").exit_code, 0);

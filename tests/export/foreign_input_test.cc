@@ -223,6 +223,36 @@ TEST(GltfMembers, WhatConcernsTheWholeFile) {
   EXPECT_THAT(ErrorOf(std::string("glTF\2\0\0\0", 8)), HasSubstr("binary form"));
 }
 
+// Numbers that a renderer refuses, and what stands beside the material.
+TEST(ForeignInputs, OutOfRangeOrBesideTheMaterial) {
+  const auto gltf = [](const std::string& material, const std::string& more = "") {
+    return "{\"asset\": {\"version\": \"2.0\"}" + more + ", \"materials\": [" + material + "]}";
+  };
+  EXPECT_THAT(ErrorOf(gltf("{\"pbrMetallicRoughness\": {\"baseColorFactor\": [2, 1, 1, 1]}}")),
+              HasSubstr("'baseColorFactor' holds 2; 0 to 1 is allowed"));
+  EXPECT_THAT(ErrorOf(gltf("{\"extensions\": {\"KHR_materials_specular\": {\"specularColorFactor\": [-1, 1, 1]}}}")),
+              HasSubstr("'specularColorFactor' holds -1"));
+  EXPECT_THAT(ErrorOf(gltf("{\"extensions\": {\"KHR_materials_ior\": {\"ior\": 0.5}}}")), HasSubstr("'ior' is 0.5"));
+  EXPECT_EQ(ErrorOf(gltf("{\"extensions\": {\"KHR_materials_ior\": {\"ior\": 0}}}")), "no error");
+  const std::string mesh = ", \"meshes\": [{\"primitives\": [{\"attributes\": {\"COLOR_0\": 1}}]}]";
+  EXPECT_THAT(Import(gltf("{}", mesh)).remarks, testing::Contains(HasSubstr("COLOR_0")));
+
+  EXPECT_THAT(ErrorOf("<scene version=\"3.0.0\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"2 2 2\"/>"
+                      "</bsdf></scene>"),
+              HasSubstr("its reflectance holds 2; 0 to 1 is allowed"));
+  EXPECT_THAT(Import(MitsubaScene("3.0.0", "", "<include filename=\"other.xml\"/>")).remarks,
+              testing::Contains("the file 'other.xml' of line 1 was not looked into"));
+
+  EXPECT_THAT(ErrorOf(Conductor(Input("weight", "float", "2"))), HasSubstr("its weight is 2"));
+  EXPECT_THAT(ErrorOf(Conductor("", "<conductor_bsdf name=\"b\" type=\"BSDF\"/>")), HasSubstr("'b' is given twice"));
+  EXPECT_THAT(Import(Conductor("", "<xi:include href=\"other.mtlx\"/>")).remarks,
+              testing::Contains("the file 'other.mtlx' of line 1 was not looked into"));
+
+  EXPECT_THAT(ErrorOf("MakeNamedMaterial \"m\" \"string type\" \"conductor\" \"rgb reflectance\" [.5 .5 .5] "
+                      "\"float roughness\" -.3"),
+              HasSubstr("uroughness is -0.3; 0 and more"));
+}
+
 TEST(GltfMembers, CountOrAreErrors) {
   const auto gltf = [](const std::string& material) {
     return "{\"asset\": {\"version\": \"2.0\"}, \"materials\": [" + material + "]}";

@@ -73,7 +73,14 @@ TEST_P(RoundTrip, EachTargetStatesItsErrorAndWhatItLoses) {
   }
   for (const ExportResult& result : Export(targets, Numbers::kBetter)) {
     const std::string name = result.target->name;
-    EXPECT_GT(result.error.uniform.compared, 5000U) << name;
+    // Texts of the model itself are not read back: their error is not measured, and is not said to be 0.
+    const bool is_text = name == "glsl" || name == "osl" || name == "brdf-explorer";
+    if (is_text) {
+      EXPECT_EQ(result.error.uniform.compared, 0U) << name;
+      EXPECT_TRUE(std::isnan(result.error.albedo)) << name;
+    } else {
+      EXPECT_GT(result.error.uniform.compared, 5000U) << name;
+    }
     const bool all_exact = std::all_of(result.carries.begin(), result.carries.end(),
                                        [](const Carried& row) { return row.how == Carries::kExactly; });
     if (all_exact) {

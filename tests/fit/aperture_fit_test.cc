@@ -153,7 +153,7 @@ TEST(ApertureFit, CountsDiscsThatReachTheHorizon) {
   GoniometerLayout layout = Fine();
   layout.theta_max = DegreesToRadians(88);
   Measurement measurement = Seen(truth, layout, {}, 0, 1);
-  Recipe recipe = RecipeOf(truth, Discs(0, 4));
+  Recipe recipe = RecipeOf(truth, Discs(1, 4));
   recipe.theta_max = kPi / 2;
   const Material material = Fit(recipe, {}, &measurement);
   EXPECT_GT(material.set_aside.at("disc_at_horizon"), 0U);

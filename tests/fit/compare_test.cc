@@ -158,7 +158,7 @@ TEST(Compare, GivenMaterialIsJudgedAndNotRecommended) {
   material.model = truth.model;
   material.channels = measurement.channels.names;
   for (const std::vector<double>& values : truth.values)
-    material.parameters.push_back({values, {}, {}, {}, true, false});
+    material.parameters.push_back({values, {}, {}, {}, {}, true, false});
   const Comparison comparison = Compare({With({Ndf::kGgx}, "ggx")}, {{"truth", material}}, {}, &measurement);
   ASSERT_EQ(comparison.models.size(), 2U);
   EXPECT_FALSE(comparison.models[1].fitted);

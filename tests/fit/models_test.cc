@@ -28,8 +28,8 @@ SyntheticCase TruthOf(const Model& model) {
     } else {
       truth.values.insert(truth.values.end(), {{2 * alpha}, {alpha}, {theta_x}, {theta_y}, {0.4}});
     }
-    if (FamilyOf(ndf) == NdfFamily::kStudent) truth.values.push_back({2.8});
-    if (FamilyOf(ndf) == NdfFamily::kProfile) truth.values.insert(truth.values.end(), {{0.5}, {-0.4}, {0.3}});
+    if (FamilyOf(ndf) == Family::kStudent) truth.values.push_back({2.8});
+    if (FamilyOf(ndf) == Family::kProfile) truth.values.insert(truth.values.end(), {{0.5}, {-0.4}, {0.3}});
     switch (model.lobes[l].fresnel) {
       case Fresnel::kSchlick:
         truth.values.push_back({0.5, 0.3});
@@ -66,7 +66,7 @@ std::vector<Model> EveryChoice() {
   std::vector<Model> models;
   const auto add = [&](const Lobe& lobe, Diffuse diffuse) {
     Model model = {{lobe}, diffuse};
-    if (FamilyOf(lobe.ndf) == NdfFamily::kProfile) model.lobes[0].grid = GridWithKnots({0, 1, 2, 4});
+    if (FamilyOf(lobe.ndf) == Family::kProfile) model.lobes[0].grid = GridWithKnots({0, 1, 2, 4});
     if (WhyNotEvaluable(model).empty()) models.push_back(model);
   };
   for (const Choice<Ndf>& ndf : NdfChoices()) {

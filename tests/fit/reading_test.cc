@@ -19,7 +19,7 @@ Material MaterialOf(const SyntheticCase& truth) {
   material.model = truth.model;
   material.channels = truth.channels;
   for (const std::vector<double>& values : truth.values)
-    material.parameters.push_back({values, {}, {}, {}, true, false});
+    material.parameters.push_back({values, {}, {}, {}, {}, true, false});
   return material;
 }
 

@@ -61,7 +61,7 @@ TEST(MaterialJson, ReadsAProfileBack) {
   material.model = profile.model;
   material.parameters.clear();
   for (const std::vector<double>& values : profile.values) {
-    material.parameters.push_back({values, values, values, values, true, false});
+    material.parameters.push_back({values, values, values, values, {}, true, false});
   }
   material.covariance_names.clear();
   material.covariance = material.covariance_clustered = {};
@@ -116,6 +116,8 @@ TEST(MaterialJson, ReadsTheInstrumentBackAndChecksIt) {
   instrument.source = 0.01;
   instrument.mean = "flux";
   instrument.drift = {0.02, true};
+  instrument.half_angles = {{"source", 0.01, 0.001, 0.012, 0.003, true}};
+  instrument.across = 0.03;
   instrument.gains = {{0.5, 0.1, 1.02, 0.01}};
   instrument.alignment = {
       {"e_x", 0.002, 0.001, 0.003, 0.9}, {"e_y", 0.001, 0.001, 0.003, 0.1}, {"e_z[2]", 0, 0.1, 1, 0}};
@@ -130,6 +132,9 @@ TEST(MaterialJson, ReadsTheInstrumentBackAndChecksIt) {
   const std::pair<const char*, nlohmann::json> bad[] = {{"/instrument/source_deg", -1},
                                                         {"/instrument/detector_deg", 40},
                                                         {"/instrument/mean", "median"},
+                                                        {"/instrument/half_angles/0/name", "lamp"},
+                                                        {"/instrument/half_angles/0/prior_deg", 0},
+                                                        {"/instrument/detector_across_deg", 50},
                                                         {"/instrument/gains/0/gain", 0},
                                                         {"/instrument/alignment/0/value_deg", 12},
                                                         {"/instrument/sample_azimuths_deg", {0}},

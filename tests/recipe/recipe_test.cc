@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 #include "tests/support/paths.h"
 #include <gmock/gmock.h>
@@ -218,6 +219,20 @@ TEST(Recipe, ReadsTheInstrument) {
   EXPECT_DOUBLE_EQ(*again.instrument.detector, *recipe.instrument.detector);
   EXPECT_EQ(again.instrument.mean, recipe.instrument.mean);
   EXPECT_FALSE(ParseRecipe(lobe, "r.toml").aperture().any());
+  for (const char* section :
+       {"source = { value = 2, prior_deg = 0.1 }\ndetector = { prior_deg = 0.3 }\n",
+        "detector = { value = 0.5, across = 4 }\n", "noise = { floor = 0.002, relative = 0.03, poisson = 0.0001 }\n",
+        "noise = { poisson = 0.0001, relative = 0.03 }\n"}) {
+    const Recipe read = ParseRecipe(lobe + "[instrument]\n" + section, "r.toml"),
+                 back = ParseRecipe(ToToml(read), "again.toml");
+    EXPECT_EQ(ToToml(back), ToToml(read));
+    const InstrumentRecipe &a = read.instrument, &b = back.instrument;
+    EXPECT_EQ(std::tie(a.source, a.source_prior, a.detector, a.detector_prior, a.detector_across),
+              std::tie(b.source, b.source_prior, b.detector, b.detector_prior, b.detector_across));
+    EXPECT_EQ(std::tie(read.noise.floor, read.noise.relative, read.noise.poisson),
+              std::tie(back.noise.floor, back.noise.relative, back.noise.poisson));
+    EXPECT_TRUE(a.source_prior || a.detector_across || read.noise.poisson > 0);
+  }
   const auto message = [&](const std::string& section) -> std::string {
     try {
       ParseRecipe(lobe + section, "r.toml");
@@ -235,6 +250,16 @@ TEST(Recipe, ReadsTheInstrument) {
   EXPECT_THAT(message("[instrument]\nalignment = { prior_deg = 9 }\n"), testing::HasSubstr("must lie in (0, 5]"));
   EXPECT_THAT(message("[instrument]\nnoise = { floor = 0.1 }\n"), testing::HasSubstr("noise is written as"));
   EXPECT_THAT(message("[instrument]\noffset = 1\n"), testing::HasSubstr("true or false"));
+  EXPECT_THAT(message("[instrument]\ndetector = { value = 1, prior_deg = 0 }\n"),
+              testing::HasSubstr("prior_deg of detector is 0: the standard deviation"));
+  EXPECT_THAT(message("[instrument]\ndetector = { value = 0, prior_deg = 1 }\n"), testing::HasSubstr("is a point"));
+  EXPECT_THAT(message("[instrument]\ndetector = { value = 1, prior_deg = 0.1, across = 2 }\n"),
+              testing::HasSubstr("is a rectangle, whose half angles are not fitted"));
+  EXPECT_THAT(message("[instrument]\nsource = { value = 1, across = 2 }\n"),
+              testing::HasSubstr("allowed: value, prior_deg"));
+  EXPECT_THAT(message("[instrument]\ndetector = { value = 1, width = 2 }\n"), testing::HasSubstr("across"));
+  EXPECT_THAT(message("[instrument]\nnoise = { floor = -1, relative = 0.1, poisson = 0.1 }\n"),
+              testing::HasSubstr("noise is written as"));
 }
 
 TEST(Recipe, ReadsWhatAnInstrumentDoesBesidesAveraging) {

@@ -42,6 +42,7 @@ std::vector<Trial> Invented(const Experiment& experiment, double factor, std::si
     trial.standard_error.assign(entries, 0.1);
     trial.standard_error_clustered.assign(entries, 0.1);
     trial.freedom.assign(entries, 35);
+    trial.independent_freedom.assign(entries, INFINITY);
     for (std::size_t e = 0; e < entries; ++e) trial.value.push_back(1 + 0.1 * factor * random.Normal());
   }
   return trials;

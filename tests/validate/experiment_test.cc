@@ -68,6 +68,34 @@ TEST(Experiment, CostOfTheTruthIsThatOfTheNoiseAndTheFitIsNotWorse) {
   }
 }
 
+// What a measurement draws once differs from trial to trial and comes again with the trial.
+TEST(Experiment, AMisalignmentIsDrawnForEachTrial) {
+  const Noise wanted = ParseNoise("misalignment=0.2");
+  const Noise one = DrawnNoise(wanted, 1), two = DrawnNoise(wanted, 2);
+  EXPECT_EQ(one.misalignment, 0);
+  EXPECT_EQ(one.misalignment_x, DrawnNoise(wanted, 1).misalignment_x);
+  EXPECT_NE(one.misalignment_x, two.misalignment_x);
+  double squares = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const Noise drawn = DrawnNoise(wanted, seed);
+    squares += drawn.misalignment_x * drawn.misalignment_x + drawn.misalignment_y * drawn.misalignment_y;
+  }
+  EXPECT_NEAR(std::sqrt(squares / 800) * 180 / kPi, 0.2, 0.02);
+}
+
+// Turned by half on its stage, a sample that stands crooked is fitted from both files without an error, if the alignment
+// is fitted.
+TEST(Experiment, ATurnedSampleIsASecondFile) {
+  Experiment experiment = test::BrushedExperiment("misalignment-x=0.3,misalignment-y=-0.2");
+  experiment.turned = true;
+  experiment.recipe.instrument.alignment = AlignmentRecipe();
+  const Trial both = RunTrial(experiment, 0);
+  EXPECT_TRUE(both.converged);
+  EXPECT_EQ(both.samples, 2 * RunTrial(test::BrushedExperiment("none"), 0).samples);
+  for (std::size_t e = 0; e < both.value.size(); ++e)
+    EXPECT_NEAR(both.value[e], both.truth[e], 1e-3 * std::fabs(both.truth[e]) + 1e-3) << e;
+}
+
 TEST(Experiment, AnotherModelIsComparedByNamesOnly) {
   Experiment experiment = test::BrushedExperiment("none");
   Model two = experiment.truth.model;

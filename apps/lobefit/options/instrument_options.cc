@@ -28,6 +28,20 @@ void InstrumentOptions::AddTo(CLI::App* app, bool with_mean) {
       ->check(half_angles)
       ->group(group);
   app->add_option("--detector", detector_deg_, "the same for the detector")->check(half_angles)->group(group);
+  app->add_option(
+         "--detector-across", across_deg_,
+         "the detector is a flat rectangle: its half angle across the meridian, --detector being that along it")
+      ->check(Within(1e-4, RadiansToDegrees(kLargestHalfAngle)))
+      ->group(group);
+  app->add_option(
+         "--source-prior", source_prior_deg_,
+         "how well the half angle of --source, or the one that the file states, is known: a standard deviation "
+         "in degrees; it is then fitted")
+      ->check(Within(1e-4, RadiansToDegrees(kLargestHalfAngle)))
+      ->group(group);
+  app->add_option("--detector-prior", detector_prior_deg_, "the same for the detector")
+      ->check(Within(1e-4, RadiansToDegrees(kLargestHalfAngle)))
+      ->group(group);
   app->add_option("--drift", drift_,
                   "gains of the incident directions, solved for: auto estimates their standard deviation, a number "
                   "gives it (0.03: 3 %)")
@@ -48,6 +62,9 @@ void InstrumentOptions::AddTo(CLI::App* app, bool with_mean) {
 void InstrumentOptions::Apply(Recipe* recipe) const {
   if (source_deg_ >= 0) recipe->instrument.source = DegreesToRadians(source_deg_);
   if (detector_deg_ >= 0) recipe->instrument.detector = DegreesToRadians(detector_deg_);
+  if (across_deg_ > 0) recipe->instrument.detector_across = DegreesToRadians(across_deg_);
+  if (source_prior_deg_ > 0) recipe->instrument.source_prior = DegreesToRadians(source_prior_deg_);
+  if (detector_prior_deg_ > 0) recipe->instrument.detector_prior = DegreesToRadians(detector_prior_deg_);
   if (!mean_.empty()) recipe->instrument.mean = ParseApertureMean(mean_);
   if (!drift_.empty()) {
     const std::optional<double> sd = ParseDouble(drift_);
@@ -62,8 +79,9 @@ void InstrumentOptions::Apply(Recipe* recipe) const {
     recipe->instrument.alignment->prior = DegreesToRadians(alignment_deg_);
   }
   recipe->instrument.offset = recipe->instrument.offset || offset_;
-  if (recipe->sel && (source_deg_ >= 0 || detector_deg_ >= 0 || !mean_.empty() || recipe->instrument.drift ||
-                      recipe->instrument.alignment || recipe->instrument.offset)) {
+  if (recipe->sel &&
+      (source_deg_ >= 0 || detector_deg_ >= 0 || source_prior_deg_ > 0 || detector_prior_deg_ > 0 || across_deg_ > 0 ||
+       !mean_.empty() || recipe->instrument.drift || recipe->instrument.alignment || recipe->instrument.offset)) {
     throw UsageError("an instrument is fitted with a model; recipe '" + recipe->name +
                      "' is a table of lobes, which takes readings as they are");
   }

@@ -11,13 +11,13 @@ namespace lobefit {
 
 class InstrumentOptions {
  public:
-  // --source, --detector, --drift, --alignment, --offset and, where `with_mean`, --mean.
+  // --source, --detector, their priors, --drift, --alignment, --offset and, where `with_mean`, --mean.
   void AddTo(CLI::App* app, bool with_mean = true);
   // Throws UsageError.
   void Apply(Recipe* recipe) const;
 
  private:
-  double source_deg_ = -1, detector_deg_ = -1;
+  double source_deg_ = -1, detector_deg_ = -1, source_prior_deg_ = -1, detector_prior_deg_ = -1, across_deg_ = -1;
   std::string mean_, drift_;
   double alignment_deg_ = -1;
   bool offset_ = false;

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "lobefit/base/flat_json.h"
 #include "lobefit/base/text.h"
-#include "lobefit/batch/results/result_row.h"
 #include "lobefit/batch/results/results.h"
 
 namespace lobefit {
@@ -15,8 +15,9 @@ namespace {
 // "describes its data" and the like where the document has a verdict, else the status.
 std::string ShareOf(const DoneRecord& done) {
   if (done.row.empty()) return NameOf(done.status);
-  for (const auto& [name, text] : CellsOf(done.row)) {
-    if (name == "verdict" && !text.empty()) return text;
+  FlatJson json(done.row);
+  while (json.Next()) {
+    if (json.name() == "verdict" && json.kind() == FlatJson::Kind::kString) return std::string(json.value());
   }
   return NameOf(done.status);
 }

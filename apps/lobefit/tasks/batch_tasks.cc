@@ -4,6 +4,7 @@
 
 #include "options/report_formats.h"
 
+#include "lobefit/base/base64.h"
 #include "lobefit/base/error.h"
 #include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
@@ -17,7 +18,9 @@ namespace {
 
 // The command that fits one task alone.
 std::string CommandOf(const Task& task) {
-  std::string command = "lobefit fit " + ShellWord(task.file);
+  std::string command = "lobefit fit";
+  for (const std::string& file : task.members.empty() ? std::vector<std::string>{task.file} : task.members)
+    command += " " + ShellWord(file);
   for (const auto& [name, word] : task.options) command += " --" + name + " " + ShellWord(word);
   return command;
 }
@@ -55,9 +58,8 @@ std::string TaskOptions::SettingsOf(const OptionWords& words) {
   }
   options->measurement.Check();
   text += options->recipe.Resolved();
-  const std::string settings = Sha256Hex(text);
-  options_.emplace(settings, std::move(options));
-  return settings;
+  options_.emplace(words, std::move(options));
+  return Sha256Hex(text);
 }
 
 FitWork::FitWork(std::filesystem::path out, BatchReports reports, std::vector<std::string> formats,
@@ -65,7 +67,7 @@ FitWork::FitWork(std::filesystem::path out, BatchReports reports, std::vector<st
     : out_(std::move(out)), reports_(reports), formats_(std::move(formats)), options_(options) {}
 
 Outcome FitWork::operator()(const Task& task, int threads) const {
-  FittedFile fitted = FitFile(options_.Of(task), {task.path.string()}, threads, CommandOf(task));
+  FittedFile fitted = FitFile(options_.Of(task), FilesToFit(task), threads, CommandOf(task));
   const std::string doubts = DoubtsAbout(fitted.material);
   const std::filesystem::path document = ResultPath(out_, task.id, ".material.json");
   MakeFolder(document.parent_path());
@@ -74,18 +76,19 @@ Outcome FitWork::operator()(const Task& task, int threads) const {
     report.threads = threads;
     WriteReports(formats_, fitted.material, fitted.measurement, ResultPath(out_, task.id, ".report.png"), report);
   }
-  if (const SpherePicture picture = DrawSpheres(fitted.material, fitted.measurement); !picture.png.empty()) {
-    WriteFileAtomically(ResultPath(out_, task.id, picture.measured ? ".spheres.png" : ".sphere.png"), picture.png);
-  }
-  // Last, so that where the document is everything is.
+  const SpherePicture picture = DrawSpheres(fitted.material, fitted.measurement);
+  FileGroup files;
   const std::string json = ToJson(fitted.material);
-  WriteFileAtomically(document, json);
+  files.Add(document, json);
   return {doubts.empty() ? TaskStatus::kFitted : TaskStatus::kDoubtful,
           doubts.empty() ? kExitDone : kExitFit,
           doubts,
           ResultRow(fitted.material),
           json.size(),
-          fitted.measurement.sha256};
+          fitted.measurement.sha256,
+          std::move(files),
+          Base64(picture.png),
+          picture.measured};
 }
 
 }  // namespace lobefit

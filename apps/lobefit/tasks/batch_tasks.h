@@ -17,22 +17,22 @@ namespace lobefit {
 // Long names of the options that a single fit has, without dashes.
 std::vector<std::string> FitOptionNames();
 
-// Options of tasks by their settings.
+// Options of tasks by their words.
 class TaskOptions {
  public:
   // The digest of what decides a result beside the file: version, options, the text of the recipe. Throws UsageError
   // and InputError for options that are not valid.
   std::string SettingsOf(const OptionWords& words);
-  // Of a task whose settings came from SettingsOf.
-  const FitFileOptions& Of(const Task& task) const { return *options_.at(task.settings); }
+  // Of a task whose words were given to SettingsOf.
+  const FitFileOptions& Of(const Task& task) const { return *options_.at(task.options); }
 
  private:
-  std::map<std::string, std::shared_ptr<const FitFileOptions>> options_;
+  std::map<OptionWords, std::shared_ptr<const FitFileOptions>> options_;
 };
 
 enum class BatchReports { kNone, kDoubtful, kAll };
 
-// Fits a task and puts report, picture and, last, the document in place.
+// Fits a task and draws its report; document and picture are of the outcome.
 class FitWork {
  public:
   // `options` must outlive the object.

@@ -87,6 +87,7 @@ std::vector<Trial> TrialParts::Run(const Experiment& experiment, std::size_t tri
     progress->Advance();
   };
   RunTrials(experiment, missing, threads, done, stop);
+  if (store) store->Close();
   return all;
 }
 

@@ -25,9 +25,9 @@ inline std::FILE* SummaryStream(const std::filesystem::path& output) {
   return IsStandardOutput(output) ? stderr : stdout;
 }
 
-// NAME of the results of `file`: as given, or the file's name without its ending. Throws UsageError for a path.
-inline std::string ResultName(const std::string& given, const std::filesystem::path& file) {
-  const std::string name = !given.empty() ? given : file == "-" ? "stdin" : file.stem().string();
+// NAME of the results: as given, or the one that they have of their own. Throws UsageError for a path.
+inline std::string ResultName(const std::string& given, const std::string& own) {
+  const std::string& name = given.empty() ? own : given;
   if (name.find('/') != std::string::npos)
     throw UsageError(fmt::format("--name '{}' is a path; the folder is given by --out", Excerpt(name)));
   return name;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,6 +23,16 @@ std::string WordsOf(const std::string& key) {
   return key;
 }
 
+// One number for all channels: shared between them, or fixed at the same value.
+bool IsOneForAll(const FittedParameter& fitted) {
+  const auto one = [](const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [&](double value) {
+      return value == values[0] || (std::isnan(value) && std::isnan(values[0]));
+    });
+  };
+  return fitted.values.size() > 1 && one(fitted.values) && one(fitted.standard_error);
+}
+
 void AppendParameters(const Material& material, std::string* text) {
   const std::vector<Parameter> parameters = Parameters(material.model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -31,15 +42,17 @@ void AppendParameters(const Material& material, std::string* text) {
       continue;
     const double factor = InsideFactor(parameters[i]);
     *text += fmt::format("  {:<18}", parameters[i].json_name);
-    for (std::size_t c = 0; c < fitted.values.size(); ++c) {
+    const bool one_for_all = IsOneForAll(fitted);
+    for (std::size_t c = 0; c < (one_for_all ? 1 : fitted.values.size()); ++c) {
       if (c == 4 && fitted.values.size() > 5) {
         *text += fmt::format("  ... {} channels", fitted.values.size());
         break;
       }
       const std::string label =
-          parameters[i].per_channel && material.channels.size() > 1 ? material.channels[c] + " " : "";
+          parameters[i].per_channel && material.channels.size() > 1 && !one_for_all ? material.channels[c] + " " : "";
       *text += "  " + label + WithError(fitted.values[c] / factor, fitted.standard_error[c] / factor);
     }
+    if (one_for_all) *text += "  (all channels)";
     if (!fitted.free) *text += "  (fixed)";
     if (fitted.at_bound) *text += "  (at its bound)";
     *text += '\n';
@@ -127,14 +140,21 @@ std::string Summary(const Material& material) {
   }
   if (material.instrument) {
     const InstrumentUsed& i = *material.instrument;
-    text += fmt::format("Instrument: half angles {:.4g} (source) and {:.4g} degrees (detector), {} mean\n",
-                        RadiansToDegrees(i.source), RadiansToDegrees(i.detector), i.mean);
+    const std::string across = i.across > 0 ? fmt::format(" x {:.4g}", RadiansToDegrees(i.across)) : std::string();
+    text += fmt::format("Instrument: half angles {:.4g} (source) and {:.4g}{} degrees (detector), {} mean\n",
+                        RadiansToDegrees(i.source), RadiansToDegrees(i.detector), across, i.mean);
     if (!i.gains.empty()) {
       const auto [low, high] =
           std::minmax_element(i.gains.begin(), i.gains.end(),
                               [](const IncidenceGain& a, const IncidenceGain& b) { return a.gain < b.gain; });
       text += fmt::format("  gains of {} incidences {:.4g} to {:.4g}, standard deviation {:.2g}{}\n", i.gains.size(),
                           low->gain, high->gain, i.drift->sd, i.drift->estimated ? " (estimated)" : " (given)");
+    }
+    for (const InstrumentHalfAngle& half_angle : i.half_angles) {
+      text += fmt::format("  {} {:.3f} +- {:.3f} degrees, given {:.3g} +- {:.2g}{}\n", half_angle.name,
+                          RadiansToDegrees(half_angle.value), RadiansToDegrees(half_angle.standard_error),
+                          RadiansToDegrees(half_angle.given), RadiansToDegrees(half_angle.prior),
+                          half_angle.determined ? "" : " (not determined)");
     }
     for (const InstrumentAngle& angle : i.alignment) {
       text += fmt::format("  {:<6} {:.3f} +- {:.3f} degrees\n", angle.name, RadiansToDegrees(angle.value),

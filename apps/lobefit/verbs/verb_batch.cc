@@ -140,7 +140,7 @@ int CollectResults(const BatchVerb& verb, const CommonOptions& common) {
   const Records records = ReadRecords(verb.out, common.Threads());
   const ResultTable table = MakeTable(list, records, common.Threads());
   if (verb.status) return PrintStatus(verb, common, table);
-  WriteResults(list, records, table, verb.out);
+  WriteResults(table, common.Threads(), verb.out);
   if (!common.json) fmt::print("Results: {}\n", (std::filesystem::path(verb.out) / "index.html").string());
   return PrintStatus(verb, common, table);
 }
@@ -206,7 +206,9 @@ std::function<int()> SetUpBatch(CLI::App* app, CommonOptions* common) {
   verb->app = app;
   app->add_option("INPUT", verb->inputs,
                   "files, folders (searched for measurements), a manifest (CSV with a column file; options of fit as "
-                  "further columns), - for names on stdin; without any, the batch that OUT holds goes on");
+                  "further columns), - for names on stdin; without any, the batch that OUT holds goes on. Where "
+                  "several files are one measurement, a manifest's row names their folder, a pattern as scan_*.csv, or "
+                  "a list with ; between");
   app->add_option("--out", verb->out, "folder of the batch")->required();
   app->add_option("--jobs", verb->jobs, "fits at once (default: as many as threads)")->check(CLI::Range(1, 1024));
   app->add_option("--memory", verb->memory,

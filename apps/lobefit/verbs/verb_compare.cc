@@ -9,6 +9,7 @@
 #include "options/measurement_options.h"
 #include "options/recipe_options.h"
 #include "text/comparison_text.h"
+#include "text/output.h"
 #include "verbs/verb.h"
 #include <fmt/format.h>
 
@@ -139,9 +140,9 @@ std::string DrawPicture(const Comparison& comparison, const Measurement& measure
 
 int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   const std::filesystem::path folder = verb.out;
-  MakeFolder(folder);
 
-  const std::string name = verb.name.empty() ? SeriesName(verb.files) : verb.name;
+  const std::string name = ResultName(verb.name, SeriesName(verb.files));
+  MakeFolder(folder);
   const std::filesystem::path document = folder / (name + ".material.json"),
                               picture_file = folder / (name + ".compare.png");
   std::vector<std::filesystem::path> inputs = InputPaths(verb.files);

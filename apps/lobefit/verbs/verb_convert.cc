@@ -59,7 +59,11 @@ int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
   source.channels = measurement.channels;
   source.isotropic = measurement.isotropic;
   // A file that defines its own interpolation is asked by it, unless its channels were chosen or mixed.
-  if (measurement.conventions.count("channels") == 0) source.brdf = TabulatedBrdf(OnlyFile(in), measurement);
+  if (measurement.conventions.count("channels") == 0) {
+    const TabulatedFunction table = TabulatedBrdf(OnlyFile(in), measurement);
+    source.brdf = table.brdf;
+    source.covers = table.covers;
+  }
   const Conversion conversion = Convert(source, format, {}, out);
   if (common.json) {
     fmt::print("{}\n", ToJson(conversion));

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tasks/maps_export.h"
+#include "text/output.h"
 #include "verbs/verb.h"
 #include <fmt/format.h>
 
@@ -87,18 +88,11 @@ int RunExport(const ExportVerb& verb, const CommonOptions& common) {
              [](const Target& target) { return target.own_model != nullptr; });
   options.old_mitsuba = IsOldMitsuba(verb.mitsuba_version);
   options.folder = verb.out;
-  options.name = verb.name;
-  if (options.name.empty()) {
-    options.name = std::filesystem::path(verb.material).filename().string();
-    for (const std::string_view ending : {".json", ".material", ".exr", ".maps"}) {
-      if (options.name.size() > ending.size() && options.name.ends_with(ending)) {
-        options.name.resize(options.name.size() - ending.size());
-      }
-    }
+  std::string own = std::filesystem::path(verb.material).filename().string();
+  for (const std::string_view ending : {".json", ".material", ".exr", ".maps"}) {
+    if (own.size() > ending.size() && own.ends_with(ending)) own.resize(own.size() - ending.size());
   }
-  if (options.name.find('/') != std::string::npos) {
-    throw UsageError(fmt::format("--name '{}' is a path; the folder is given by --out", Excerpt(options.name)));
-  }
+  options.name = ResultName(verb.name, own);
   options.material_file = std::filesystem::path(verb.material).filename().string();
   options.command = common.command;
   options.numbers = verb.refit ? Numbers::kRefitted : verb.copy ? Numbers::kCopied : Numbers::kBetter;

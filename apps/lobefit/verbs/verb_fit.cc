@@ -7,6 +7,7 @@
 
 #include "options/report_formats.h"
 #include "tasks/fit_file.h"
+#include "text/output.h"
 #include "text/summary.h"
 #include "text/terminal_plot.h"
 #include "verbs/verb.h"
@@ -31,15 +32,13 @@ struct FitVerb {
 };
 
 int RunFit(const FitVerb& verb, const CommonOptions& common) {
-  const std::filesystem::path folder = verb.out;
-  MakeFolder(folder);
-
   const std::string stem = SeriesName(verb.files);
   const bool of_material = IsOneMaterial(verb.files);
   // A table of lobes must not overwrite the material that it was sampled from.
-  const std::string name = !verb.name.empty() ? verb.name
-                           : of_material      ? stem.substr(0, stem.find('.')) + ".sel"
-                                              : stem;
+  const std::string own = of_material ? stem.substr(0, stem.find('.')) + ".sel" : stem;
+  const std::string name = ResultName(verb.name, own);
+  const std::filesystem::path folder = verb.out;
+  MakeFolder(folder);
   const std::filesystem::path document = folder / (name + ".material.json"), picture = folder / (name + ".report.png");
   const std::vector<std::string> formats = ParseReportFormats(verb.format);
   const std::vector<std::filesystem::path> inputs = InputPaths(verb.files);

@@ -106,18 +106,25 @@ nlohmann::ordered_json InstrumentToJson(const StatedInstrument& stated) {
     return half_angle ? nlohmann::ordered_json(RadiansToDegrees(*half_angle)) : nlohmann::ordered_json(nullptr);
   };
   nlohmann::ordered_json json = {{"source_deg", degrees(stated.source)}, {"detector_deg", degrees(stated.detector)}};
+  if (stated.detector_across) json["detector_across_deg"] = degrees(stated.detector_across);
+  if (stated.source_prior) json["source_prior_deg"] = degrees(stated.source_prior);
+  if (stated.detector_prior) json["detector_prior_deg"] = degrees(stated.detector_prior);
   json["mean"] = stated.plain_mean ? nlohmann::ordered_json(*stated.plain_mean ? "plain" : "flux")
                                    : nlohmann::ordered_json(nullptr);
   return json;
 }
 
 std::string InstrumentToText(const StatedInstrument& stated) {
-  const auto half_angle = [](const char* name, const std::optional<double>& radians) {
-    return radians ? fmt::format("{} {:.4g} degrees (half angle)", name, RadiansToDegrees(*radians))
-                   : fmt::format("{} not stated", name);
+  const auto half_angle = [](const char* name, const std::optional<double>& radians,
+                             const std::optional<double>& prior) {
+    if (!radians) return fmt::format("{} not stated", name);
+    const std::string known = prior ? fmt::format(" +- {:.2g}", RadiansToDegrees(*prior)) : "";
+    return fmt::format("{} {:.4g}{} degrees (half angle)", name, RadiansToDegrees(*radians), known);
   };
-  return fmt::format("  instrument   {}, {}, mean {}\n", half_angle("source", stated.source),
-                     half_angle("detector", stated.detector),
+  return fmt::format("  instrument   {}, {}, mean {}\n", half_angle("source", stated.source, stated.source_prior),
+                     half_angle("detector", stated.detector, stated.detector_prior) +
+                         (stated.detector_across ? fmt::format(" x {:.4g}", RadiansToDegrees(*stated.detector_across))
+                                                 : std::string()),
                      stated.plain_mean ? (*stated.plain_mean ? "plain" : "flux") : "not stated");
 }
 
@@ -207,7 +214,7 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
     Description description = DescribeRanges(measurement);
     if (*statistics || measurement.samples.size() <= kStatisticsByDefault) {
       description.statistics = Describe(measurement, measurement.conventions.count("channels") == 0
-                                                         ? TabulatedBrdf(OnlyFile(*files), measurement)
+                                                         ? TabulatedBrdf(OnlyFile(*files), measurement).brdf
                                                          : nullptr);
     }
     if (!picture->empty()) WriteCoveragePng(measurement, *picture);

@@ -120,7 +120,7 @@ int RunMapsVerb(const MapsVerb& verb, const CommonOptions& common) {
   if (!options.recipe.normal_map.empty()) SetNormalMap(options.recipe.normal_map, verb.normal_y == "down", &stack);
   options.recipe.rules.schlick = stack.calibrated;
   options.folder = verb.out;
-  options.name = verb.name.empty() ? StackName(verb.stack) : ResultName(verb.name, verb.stack);
+  options.name = ResultName(verb.name, StackName(verb.stack));
   options.threads = common.Threads();
   options.merge = verb.merge;
   options.normal_y = verb.normal_y == "up" ? NormalY::kUp : NormalY::kDown;

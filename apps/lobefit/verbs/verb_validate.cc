@@ -41,7 +41,7 @@ struct ValidateVerb {
   std::string source;
   std::size_t trials = 200;
   std::size_t starts = 8;
-  bool draw = false, self_check = false, without_instrument = false;
+  bool draw = false, self_check = false, without_instrument = false, turned = false;
   std::string sweep, picture;
   TrialParts parts;
 };
@@ -60,6 +60,7 @@ ExperimentRequest RequestOf(const ValidateVerb& verb) {
   request.truth = verb.synthesis.LoadTruth(verb.source);
   request.noise = verb.synthesis.ChosenNoise();
   request.layout = verb.synthesis.Layout();
+  request.turned = verb.turned;
   request.seed = verb.synthesis.seed();
   request.recipe = verb.recipe.Choose(request.truth.model);
   if (request.noise.plain_mean) request.recipe.instrument.mean = ApertureMean::kPlain;
@@ -242,6 +243,8 @@ std::function<int()> SetUpValidate(CLI::App* app, CommonOptions* common) {
   app->add_flag("--self-check", verb->self_check, "a validation of this installation, without a source");
   app->add_flag("--without-instrument", verb->without_instrument,
                 "fit each measurement also without the instrument that the fit is given, and show both");
+  app->add_flag("--turned", verb->turned,
+                "measure every sample a second time, turned by 180 degrees on its stage, and fit both files together");
   app->add_flag("--draw", verb->draw, "every trial draws a material of the source's kind");
   verb->recipe.AddTo(app);
   verb->synthesis.AddTo(app);

@@ -6,15 +6,14 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/base64.h"
-#include "lobefit/base/file.h"
 #include "lobefit/base/printable.h"
 #include "lobefit/base/text.h"
 #include "lobefit/batch/index/assets.h"
-#include "lobefit/batch/results/result_row.h"
 #include "lobefit/math/student_t.h"
 #include "lobefit/report/web/template.h"
 
@@ -59,13 +58,6 @@ Json HalfInterval(const std::string& error, const std::string& clustered, const 
   return Json::parse(digits, nullptr, false);
 }
 
-std::string TextOf(const ResultTable::Row& row, std::size_t column) {
-  for (const auto& [at, text] : row.cells) {
-    if (at == column) return text;
-  }
-  return "";
-}
-
 // The rows of the page: failures first, then by id, as many as it takes; by id again.
 std::vector<const ResultTable::Row*> ChooseRows(const ResultTable& table, std::size_t most) {
   std::vector<const ResultTable::Row*> rows;
@@ -79,98 +71,117 @@ std::vector<const ResultTable::Row*> ChooseRows(const ResultTable& table, std::s
   return rows;
 }
 
-Json Pictures(const std::vector<const ResultTable::Row*>& rows, const std::filesystem::path& out, std::size_t most) {
+Json Pictures(const ResultTable& table, const std::vector<const ResultTable::Row*>& rows, std::size_t most) {
   Json pictures = Json::array();
+  RowReader reader(*table.records);
   std::size_t taken = 0;
   for (const ResultTable::Row* row : rows) {
     pictures.push_back(nullptr);
-    if (row->done->document_bytes == 0 || taken == most) continue;
-    for (const bool measured : {true, false}) {
-      const std::filesystem::path path = ResultPath(out, row->task->id, measured ? ".spheres.png" : ".sphere.png");
-      std::error_code error;
-      if (!std::filesystem::exists(path, error)) continue;
-      pictures.back() = {{"measured", measured}, {"png", Base64(FileBytes(path).bytes())}};
-      ++taken;
-      break;
-    }
+    const std::string_view picture = taken < most ? reader.ReadPicture(*row->done) : "";
+    if (picture.empty()) continue;
+    pictures.back() = {{"measured", row->done->picture_is_measured}, {"png", picture}};
+    ++taken;
   }
   return pictures;
 }
 
+// The columns of the page with what their rows hold.
+class PageColumns {
+ public:
+  PageColumns(const ResultTable& table, const std::vector<const ResultTable::Row*>& rows) : table_(table) {
+    std::map<std::string_view, std::size_t> place;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) place[table.columns[i]] = i;
+    const auto find = [&](const std::string& name) {
+      const auto at = place.find(name);
+      return at == place.end() ? kNone : at->second;
+    };
+    // Columns in which no row has anything say nothing.
+    std::vector<bool> filled(table.columns.size(), false);
+    RowTexts texts(table);
+    for (const ResultTable::Row* row : rows) {
+      const std::vector<std::string>& fields = texts.Of(*row);
+      for (std::size_t i = 0; i < fields.size(); ++i) filled[i] = filled[i] || !fields[i].empty();
+    }
+    for (std::size_t i = 0; i < filled.size(); ++i) {
+      const std::string& name = table.columns[i];
+      if (filled[i] && IsShown(name))
+        columns_.push_back({i, find(name + ".stderr"), find(name + ".stderr_clustered"),
+                            find(name + ".clustered_freedom"), false, 0, Json::array()});
+    }
+    for (const ResultTable::Row* row : rows) Add(texts.Of(*row));
+  }
+
+  // Columns, rows by column, half intervals by place of the column, and the reflectance that most rows have, which with
+  // the width says most of a material.
+  Json ToJson() && {
+    Json columns = Json::array(), errors = Json::object();
+    std::string scatter_y;
+    std::size_t most = 0;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      Column& column = columns_[k];
+      const std::string& name = table_.columns[column.place];
+      columns.push_back({{"name", name}, {"text", column.is_text}});
+      if (column.error == kNone) continue;
+      errors[std::to_string(k)] = std::move(column.half_intervals);
+      if (column.numbers > most && (name.starts_with("f0") || name.starts_with("scale"))) {
+        scatter_y = name;
+        most = column.numbers;
+      }
+    }
+    return {{"columns", columns}, {"rows", std::move(rows_)}, {"errors", errors}, {"scatter_y", scatter_y}};
+  }
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  struct Column {
+    std::size_t place, error, clustered, freedom;  // in the table
+    bool is_text;
+    std::size_t numbers;
+    Json half_intervals;
+  };
+
+  void Add(const std::vector<std::string>& fields) {
+    const auto text = [&](std::size_t place) { return place == kNone ? std::string() : fields[place]; };
+    Json cells = Json::array();
+    for (Column& column : columns_) {
+      cells.push_back(Shown(fields[column.place]));
+      column.is_text = column.is_text || cells.back().is_string();
+      column.numbers += cells.back().is_number() ? 1 : 0;
+      if (column.error == kNone) continue;
+      column.half_intervals.push_back(HalfInterval(text(column.error), text(column.clustered), text(column.freedom)));
+    }
+    rows_.push_back(std::move(cells));
+  }
+
+  const ResultTable& table_;
+  std::vector<Column> columns_;
+  Json rows_ = Json::array();
+};
+
 Json DataOf(const ResultTable& table, const std::filesystem::path& out, const IndexOptions& options) {
   const std::vector<const ResultTable::Row*> rows = ChooseRows(table, options.most_rows);
-  std::map<std::string, std::size_t> place;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) place[table.columns[i]] = i;
-  // Columns in which no row has anything say nothing.
-  std::set<std::size_t> filled;
-  for (const ResultTable::Row* row : rows) {
-    for (const auto& [column, text] : row->cells) filled.insert(column);
-  }
-  std::vector<std::size_t> shown;
-  for (const std::size_t i : filled) {
-    if (IsShown(table.columns[i])) shown.push_back(i);
-  }
-  // Cells by column, and the half intervals of those that have errors.
-  Json json_rows = Json::array(), columns = Json::array(), errors = Json::object(), reports = Json::array();
-  std::vector<bool> is_text(shown.size(), false);
-  for (const ResultTable::Row* row : rows) {
-    Json cells = Json::array();
-    for (std::size_t k = 0; k < shown.size(); ++k) {
-      cells.push_back(Shown(TextOf(*row, shown[k])));
-      is_text[k] = is_text[k] || cells.back().is_string();
-    }
+  Json data = PageColumns(table, rows).ToJson();
+  Json reports = Json::array();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     std::error_code error;
-    if (std::filesystem::exists(ResultPath(out, row->task->id, ".report.html"), error))
-      reports.push_back(json_rows.size());
-    json_rows.push_back(cells);
-  }
-  std::string scatter_y;
-  std::size_t scatter_values = 0;
-  for (std::size_t k = 0; k < shown.size(); ++k) {
-    const std::string& name = table.columns[shown[k]];
-    const auto error = place.find(name + ".stderr");
-    columns.push_back({{"name", name}, {"text", static_cast<bool>(is_text[k])}});
-    if (error == place.end()) continue;
-    // The reflectance that most rows have, which with the width says most of a material.
-    const auto values = static_cast<std::size_t>(
-        std::count_if(json_rows.begin(), json_rows.end(), [&](const Json& cells) { return cells[k].is_number(); }));
-    if (values > scatter_values && (name.starts_with("f0") || name.starts_with("scale"))) {
-      scatter_y = name;
-      scatter_values = values;
-    }
-    Json column = Json::array();
-    for (const ResultTable::Row* row : rows) {
-      const auto text = [&](const char* ending) {
-        const auto at = place.find(name + ending);
-        return at == place.end() ? std::string() : TextOf(*row, at->second);
-      };
-      column.push_back(HalfInterval(text(".stderr"), text(".stderr_clustered"), text(".clustered_freedom")));
-    }
-    errors[std::to_string(k)] = column;
+    if (std::filesystem::exists(ResultPath(out, rows[i]->task->id, ".report.html"), error)) reports.push_back(i);
   }
   Json totals = {{"listed", table.rows.size() + table.missing.size()}};
   for (const TaskStatus status :
        {TaskStatus::kFitted, TaskStatus::kDoubtful, TaskStatus::kFailed, TaskStatus::kCrashed})
     totals[NameOf(status)] = table.totals.contains(status) ? table.totals.at(status) : 0;
   totals["missing"] = table.missing.size();
-  Json verdicts = Json::object(), missing = Json::array();
-  for (const ResultTable::Row& row : table.rows) {
-    const std::string verdict = TextOf(row, place.at("verdict"));
-    if (!verdict.empty()) verdicts[verdict] = verdicts.value(verdict, 0) + 1;
-  }
+  Json missing = Json::array();
   for (const Task* task : table.missing) {
     if (missing.size() < kMostNamed) missing.push_back(task->id);
   }
-  return {{"totals", totals},
-          {"verdicts", verdicts},
-          {"missing", missing},
-          {"columns", columns},
-          {"rows", json_rows},
-          {"errors", errors},
-          {"reports", reports},
-          {"scatter_y", scatter_y},
-          {"most_pictures", options.most_pictures},
-          {"pictures", Pictures(rows, out, options.most_pictures)}};
+  data["totals"] = totals;
+  data["verdicts"] = table.verdicts;
+  data["missing"] = missing;
+  data["reports"] = reports;
+  data["most_pictures"] = options.most_pictures;
+  data["pictures"] = Pictures(table, rows, options.most_pictures);
+  return data;
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ function showTotals() {
   shares.setAttribute("aria-label", Object.entries(data.totals).map(([name, count]) => name + " " + count).join(", "));
   for (const [verdict, count] of Object.entries(data.verdicts)) {
     const tile = make("div", "total");
-    tile.append(make("b", "", count.toLocaleString("en")), verdict);
+    tile.append(make("b", "", count.toLocaleString("en")), "verdict " + verdict);
     totals.append(tile);
   }
 }
@@ -105,7 +105,7 @@ function card(index) {
   name.title = row[idColumn];
   name.href = data.reports.includes(index) ? linkTo(row, ".report.html") : linkTo(row, ".material.json");
   const said = row[verdictColumn] || row[statusColumn];
-  box.append(spheres, name, make("span", "words", (row[modelColumn] || "") + " · " + said));
+  box.append(spheres, name, make("span", "words", said + (row[modelColumn] ? " · " + row[modelColumn] : "")));
   return box;
 }
 

@@ -10,9 +10,12 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/file.h"
 #include "lobefit/base/text.h"
+#include "lobefit/batch/list/series.h"
 #include "lobefit/io/csv/reader.h"
 #include "lobefit/io/read.h"
+#include "lobefit/io/series.h"
 #include "lobefit/io/text/decoded_file.h"
 
 namespace lobefit {
@@ -91,7 +94,7 @@ class Gatherer {
 
   void Append(Task task) {
     for (const auto& [name, words] : common_) task.options.emplace(name, words);
-    task.bytes = SizeOf(task.path);
+    for (const std::string& file : FilesToFit(task)) task.bytes += SizeOf(ParseFileSpec(file).path);
     gathered_.list.tasks.push_back(std::move(task));
   }
 
@@ -99,11 +102,25 @@ class Gatherer {
     Append({IdOf(file), file, std::filesystem::absolute(file).lexically_normal(), 0, {}, "", {}, place});
   }
 
+  // A folder is a series here, as in a manifest: each name of a list is one task.
+  void AddListed(const std::string& file, const std::string& place) {
+    if (file.find('\0') != std::string::npos)
+      throw InputError(place + ": holds a zero byte; give one name a line, as `find -type f` without -print0 does");
+    std::error_code error;
+    if (!std::filesystem::is_directory(file, error)) return AddFile(file, place);
+    const Path folder = std::filesystem::current_path();
+    try {
+      Append({IdOf(file), file, folder, 0, {}, "", {}, place, ListSeries(file, folder, common_.contains("columns"))});
+    } catch (const InputError& reason) {
+      throw InputError(place + ": " + reason.what());
+    }
+  }
+
   void AddStandardInput() {
     std::string line;
     for (std::size_t number = 1; std::getline(std::cin, line); ++number) {
       const std::string name(Trim(line));
-      if (!name.empty()) AddFile(name, fmt::format("standard input, line {}", number));
+      if (!name.empty()) AddListed(name, fmt::format("standard input, line {}", number));
     }
   }
 
@@ -166,11 +183,26 @@ class Gatherer {
     }
   }
 
+  // Whether the id needs a folder where the results of another one lie.
+  static void CheckFolders(const Task& task, const std::unordered_map<std::string, const Task*>& ids) {
+    for (Path folder = Path(task.id).parent_path(); !folder.empty(); folder = folder.parent_path()) {
+      for (const std::string ending : {".material.json", ".report.png", ".report.html"}) {
+        const std::string name = folder.string();
+        const auto other = name.ends_with(ending) ? ids.find(name.substr(0, name.size() - ending.size())) : ids.end();
+        if (other == ids.end()) continue;
+        throw InputError(
+            fmt::format("{}: the id '{}' needs a folder that is named as a result of '{}' ({}); give one of "
+                        "them another id",
+                        task.place, Excerpt(task.id, 80), Excerpt(other->first, 80), other->second->place));
+      }
+    }
+  }
+
   void Check() const {
     std::unordered_map<std::string, const Task*> ids, files;
     for (const Task& task : gathered_.list.tasks) {
       CheckId(task);
-      const auto [same_file, new_file] = files.emplace(task.path.string(), &task);
+      const auto [same_file, new_file] = files.emplace(Join(FilesToFit(task), "\n"), &task);
       if (!new_file && same_file->second->options == task.options) {
         throw InputError(
             fmt::format("{}: '{}' is listed already ({}); remove one, or give them different options and "
@@ -186,6 +218,7 @@ class Gatherer {
                         same_id->second->place));
       }
     }
+    for (const Task& task : gathered_.list.tasks) CheckFolders(task, ids);
   }
 
   const OptionWords& common_;
@@ -216,7 +249,10 @@ void SetSettings(const std::function<std::string(const OptionWords&)>& settings_
         throw Error(error.exit_code(), fmt::format("{}: {}", task.place, error.what()));
       }
     }
-    task.settings = found->second;
+    std::string keys;
+    for (const std::string& file : FilesToFit(task)) keys += Join(ParseFileSpec(file).keys, ",") + "\n";
+    const bool stated = keys.find_first_not_of('\n') != std::string::npos;
+    task.settings = stated ? Sha256Hex(found->second + "\n" + keys) : found->second;
   }
 }
 

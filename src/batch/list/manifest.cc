@@ -9,6 +9,8 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/batch/list/csv_text.h"
+#include "lobefit/batch/list/series.h"
+#include "lobefit/io/series.h"
 
 namespace lobefit {
 namespace {
@@ -66,6 +68,22 @@ std::string WithFolder(const std::string& word, const std::string& option, const
   return Contains(names.of_files, option) && std::filesystem::is_regular_file(path, error) ? path.string() : word;
 }
 
+// One file stays as it was listed, whether it is there or not.
+void TakeFiles(const std::filesystem::path& folder, Task* task) {
+  try {
+    const std::vector<std::string> files = ListSeries(task->file, folder, task->options.contains("columns"));
+    if (files.size() == 1 && files[0] == task->file) {
+      const FileSpec spec = ParseFileSpec((folder / task->file).string());
+      task->path = spec.path.lexically_normal();
+      if (spec.keys.empty()) return;
+    }
+    task->path = folder.lexically_normal();
+    task->members = files;
+  } catch (const InputError& error) {
+    throw InputError(task->place + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 bool LooksLikeManifest(std::string_view text, const ManifestNames& names) {
@@ -108,15 +126,18 @@ WorkList ParseManifest(std::string_view text, const std::filesystem::path& path,
     Task task;
     task.file = fields[header.file];
     if (task.file.empty()) throw InputError(place + ": names no file");
-    task.path = (folder / task.file).lexically_normal();
-    task.id = header.id != Header::kNone && !fields[header.id].empty() ? fields[header.id] : IdOf(task.file);
-    if (task.id.empty())
-      throw InputError(fmt::format("{}: '{}' names a folder; a row names a file", place, Excerpt(task.file)));
     for (const auto& [column, option] : header.options) {
       if (!fields[column].empty()) task.options[option] = WithFolder(fields[column], option, folder, names);
     }
     for (const auto& [column, extra] : header.extra) task.extra.push_back(fields[column]);
     task.place = place;
+    TakeFiles(folder, &task);
+    const bool has_id = header.id != Header::kNone && !fields[header.id].empty();
+    task.id = has_id ? fields[header.id] : IdOf(task.members.empty() ? task.file : SeriesId(task.file));
+    if (task.id.empty()) {
+      throw InputError(fmt::format("{}: '{}' holds no beginning that the results can be named by; give the row an id",
+                                   place, Excerpt(task.file, 80)));
+    }
     list.tasks.push_back(task);
   }
   if (list.tasks.empty()) throw InputError(name + ": lists no file; a manifest has a row for each file");

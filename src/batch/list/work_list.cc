@@ -25,13 +25,11 @@ std::string Line(const Json& json) { return json.dump(-1, ' ', false, Json::erro
 std::string ToText(const WorkList& list) {
   std::string text = Line({{"format", kFormat}, {"version", Version()}, {"extra_columns", list.extra_columns}});
   for (const Task& task : list.tasks) {
-    text += Line({{"id", task.id},
-                  {"file", task.file},
-                  {"path", task.path.string()},
-                  {"bytes", task.bytes},
-                  {"options", task.options},
-                  {"settings", task.settings},
-                  {"extra", task.extra}});
+    Json json = {{"id", task.id},       {"file", task.file},       {"path", task.path.string()},
+                 {"bytes", task.bytes}, {"options", task.options}, {"settings", task.settings},
+                 {"extra", task.extra}};
+    if (!task.members.empty()) json["members"] = task.members;
+    text += Line(json);
   }
   return text;
 }
@@ -64,7 +62,8 @@ void CheckContains(const WorkList& list, const WorkList& stored, const std::file
           "{}: '{}' is listed with {}, but {} holds it with {}{}; choose another --out, or the same options",
           found->second->place, Excerpt(task.id, 200), OptionText(found->second->options), out.string(),
           OptionText(task.options),
-          found->second->options == task.options ? " and another text of the recipe" : std::string()));
+          found->second->options == task.options ? ", where its recipe's text or keys of its files were others"
+                                                 : std::string()));
     }
   }
 }
@@ -74,6 +73,13 @@ void CheckContains(const WorkList& list, const WorkList& stored, const std::file
 void SortBySize(WorkList* list) {
   std::sort(list->tasks.begin(), list->tasks.end(),
             [](const Task& a, const Task& b) { return a.bytes != b.bytes ? a.bytes > b.bytes : a.id < b.id; });
+}
+
+std::vector<std::string> FilesToFit(const Task& task) {
+  if (task.members.empty()) return {task.path.string()};
+  std::vector<std::string> files;
+  for (const std::string& member : task.members) files.push_back((task.path / member).string());
+  return files;
 }
 
 std::string TaskKey(const std::string& content_sha256, const std::string& settings) {
@@ -97,6 +103,7 @@ WorkList ReadWorkList(const std::filesystem::path& out) {
                               json.at("options").get<OptionWords>(), json.at("settings").get<std::string>(),
                               json.at("extra").get<std::vector<std::string>>(),
                               fmt::format("{}, line {}", path.string(), lines.line_number())});
+        if (json.contains("members")) json.at("members").get_to(list.tasks.back().members);
         continue;
       }
       if (json.at("format") != kFormat) throw InputError(path.string() + ": is not a work list; choose another --out");

@@ -16,14 +16,21 @@ using OptionWords = std::map<std::string, std::string>;
 struct Task {
   std::string id;              // names the results; a relative path without ".."
   std::string file;            // as listed
-  std::filesystem::path path;  // absolute
-  std::uint64_t bytes = 0;     // of the file when it was listed
+  std::filesystem::path path;  // of the file, or the folder to which those of a series are relative; absolute
+  std::uint64_t bytes = 0;     // of the files when they were listed
   OptionWords options;
-  // SHA-256 of what decides the result beside the file: the options with their recipe, and the version.
+  // SHA-256 of what decides the result beside the files: the options with their recipe, keys stated for files, and the
+  // version.
   std::string settings;
   std::vector<std::string> extra;  // of the columns that are passed through
   std::string place;               // where the task was listed, for messages: "work.csv, line 3"; not stored
+  // Of a series, whose files are one measurement: their names, perhaps with keys: "scan_10.csv:theta_i=10". Empty: `path`
+  // is the only file.
+  std::vector<std::string> members = {};
 };
+
+// The task's files as `lobefit fit` takes them, absolute.
+std::vector<std::string> FilesToFit(const Task& task);
 
 struct WorkList {
   std::vector<std::string> extra_columns;

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
 #include "lobefit/recipe/recipe.h"
 
@@ -48,39 +46,6 @@ void AppendParameters(const Material& material, Json* row) {
   }
 }
 
-// Texts of an object without nested ones.
-class FlatObject : public nlohmann::json_sax<nlohmann::json> {
- public:
-  explicit FlatObject(std::vector<std::pair<std::string, std::string>>* cells) : cells_(*cells) {}
-
-  bool null() override { return Put(""); }
-  bool boolean(bool value) override { return Put(value ? "true" : "false"); }
-  bool number_integer(number_integer_t value) override { return Put(std::to_string(value)); }
-  bool number_unsigned(number_unsigned_t value) override { return Put(std::to_string(value)); }
-  bool number_float(number_float_t, const string_t& text) override { return Put(text); }
-  bool string(string_t& value) override { return Put(value); }
-  bool binary(binary_t&) override { return false; }
-  bool start_object(std::size_t) override { return !inside_ && (inside_ = true); }
-  bool key(string_t& name) override {
-    cells_.emplace_back(name, "");
-    return true;
-  }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return false; }
-  bool end_array() override { return false; }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
-
- private:
-  bool Put(const std::string& text) {
-    if (cells_.empty()) return false;
-    cells_.back().second = text;
-    return true;
-  }
-
-  std::vector<std::pair<std::string, std::string>>& cells_;
-  bool inside_ = false;
-};
-
 }  // namespace
 
 const std::vector<std::string>& FixedResultColumns() {
@@ -117,15 +82,6 @@ std::string ResultRow(const Material& material) {
   for (const MetricError& error : material.errors) row["error." + error.metric] = Number(error.rms);
   AppendParameters(material, &row);
   return row.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::vector<std::pair<std::string, std::string>> CellsOf(std::string_view row) {
-  constexpr std::size_t kUsual = 80;
-  std::vector<std::pair<std::string, std::string>> cells;
-  cells.reserve(kUsual);
-  FlatObject object(&cells);
-  if (!nlohmann::json::sax_parse(row, &object)) throw InputError("'" + Excerpt(row) + "' is no row of results");
-  return cells;
 }
 
 }  // namespace lobefit

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "lobefit/material/material.h"
@@ -17,8 +16,5 @@ std::string ResultRow(const Material& material);
 
 // The columns of ResultRow that every material has, in order.
 const std::vector<std::string>& FixedResultColumns();
-
-// Name and text of each column of such an object; a null is an empty text. Throws InputError where it is none.
-std::vector<std::pair<std::string, std::string>> CellsOf(std::string_view row);
 
 }  // namespace lobefit

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <ctime>
+#include <tuple>
 #include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/flat_json.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"
 #include "lobefit/batch/list/csv_text.h"
@@ -19,21 +23,6 @@ namespace {
 
 const std::vector<std::string> kFirst = {"id", "file"};
 const std::vector<std::string> kOfTask = {"status", "verdict", "message", "sha256", "key"};
-
-// Places of columns by name; new names are appended.
-class Columns {
- public:
-  std::size_t PlaceOf(const std::string& name) {
-    const auto [place, is_new] = places_.emplace(name, names_.size());
-    if (is_new) names_.push_back(name);
-    return place->second;
-  }
-  const std::vector<std::string>& names() const { return names_; }
-
- private:
-  std::unordered_map<std::string, std::size_t> places_;
-  std::vector<std::string> names_;
-};
 
 std::string UtcText(double seconds) {
   const auto whole = static_cast<std::time_t>(seconds);
@@ -47,6 +36,71 @@ void AppendLine(const std::vector<std::string>& fields, std::string* text) {
     *text += CsvField(fields[i]);
   }
   *text += '\n';
+}
+
+constexpr std::size_t kBlock = 256;
+std::size_t Blocks(const ResultTable& table) { return (table.rows.size() + kBlock - 1) / kBlock; }
+
+// Calls work(row, ...) for the rows of a block.
+template <typename Work>
+void ForBlock(const ResultTable& table, std::size_t block, const Work& work) {
+  const std::size_t end = std::min(table.rows.size(), (block + 1) * kBlock);
+  for (std::size_t i = block * kBlock; i < end; ++i) work(table.rows[i]);
+}
+
+// Names in the order in which they came.
+class OrderedNames {
+ public:
+  // Names mostly come in the order in which they came before: `hint` is where the last one stood.
+  void Add(std::string_view name, std::size_t* hint) {
+    if (*hint + 1 < names_.size() && names_[*hint + 1] == name) {
+      ++*hint;
+      return;
+    }
+    const auto [place, is_new] = places_.emplace(std::string(name), names_.size());
+    if (is_new) names_.emplace_back(name);
+    *hint = place->second;
+  }
+  std::vector<std::string>& names() { return names_; }
+
+ private:
+  std::unordered_map<std::string, std::size_t> places_;
+  std::vector<std::string> names_;
+};
+
+// What the results of a block have.
+struct BlockColumns {
+  OrderedNames names;
+  std::map<std::string, std::size_t> verdicts;
+};
+
+BlockColumns ColumnsOf(const ResultTable& table, std::size_t block) {
+  BlockColumns columns;
+  RowReader reader(*table.records);
+  ForBlock(table, block, [&](const ResultTable::Row& row) {
+    const std::string_view text = reader.Read(*row.done);
+    if (text.empty()) return;
+    FlatJson json(text);
+    std::size_t hint = 0;
+    while (json.Next()) {
+      columns.names.Add(json.name(), &hint);
+      if (json.name() == "verdict" && json.kind() == FlatJson::Kind::kString)
+        ++columns.verdicts[std::string(json.value())];
+    }
+  });
+  return columns;
+}
+
+// What `text_of` gives for each block, in order; a few blocks are in memory at once.
+template <typename TextOf>
+void WriteBlocks(const ResultTable& table, int threads, std::ostream& out, const TextOf& text_of) {
+  const std::size_t at_once = 4 * static_cast<std::size_t>(std::max(1, threads));
+  std::vector<std::string> texts(at_once);
+  for (std::size_t first = 0; first < Blocks(table); first += at_once) {
+    const std::size_t count = std::min(at_once, Blocks(table) - first);
+    ParallelFor(count, threads, [&](std::size_t i) { texts[i] = text_of(first + i); });
+    for (std::size_t i = 0; i < count; ++i) out << texts[i];
+  }
 }
 
 }  // namespace
@@ -65,47 +119,60 @@ ResultTable MakeTable(const WorkList& list, const Records& records, int threads)
   for (const Task& task : list.tasks) tasks.push_back(&task);
   std::sort(tasks.begin(), tasks.end(), [](const Task* a, const Task* b) { return a->id < b->id; });
   ResultTable table;
+  table.list = &list;
+  table.records = &records;
   for (const Task* task : tasks) {
     const auto done = latest.find(task->id);
     if (done == latest.end()) {
       table.missing.push_back(task);
       continue;
     }
-    table.rows.push_back({task, done->second, {}});
+    table.rows.push_back({task, done->second});
     ++table.totals[done->second->status];
   }
-  std::vector<std::vector<std::pair<std::string, std::string>>> parsed(table.rows.size());
-  constexpr std::size_t kBlock = 256;
-  ParallelFor((table.rows.size() + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
-    for (std::size_t i = block * kBlock; i < std::min(table.rows.size(), (block + 1) * kBlock); ++i) {
-      if (!table.rows[i].done->row.empty()) parsed[i] = CellsOf(table.rows[i].done->row);
-    }
-  });
-
-  Columns columns;
-  for (const std::string& name : kFirst) columns.PlaceOf(name);
-  for (const std::string& name : list.extra_columns) columns.PlaceOf(name);
-  for (const std::string& name : kOfTask) columns.PlaceOf(name);
-  for (const std::string& name : FixedResultColumns()) columns.PlaceOf(name);
-  for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    ResultTable::Row& row = table.rows[r];
-    const auto put = [&](const std::string& name, std::string text) {
-      if (!text.empty()) row.cells.emplace_back(columns.PlaceOf(name), std::move(text));
-    };
-    row.cells.reserve(parsed[r].size() + kFirst.size() + kOfTask.size() + list.extra_columns.size());
-    put("id", row.task->id);
-    put("file", row.task->file);
-    for (std::size_t i = 0; i < list.extra_columns.size(); ++i) put(list.extra_columns[i], row.task->extra[i]);
-    put("status", NameOf(row.done->status));
-    put("message", row.done->message);
-    put("sha256", row.done->sha256);
-    put("key", row.done->key);
-    // A column is there even where every text of it is empty.
-    for (auto& [name, text] : parsed[r]) columns.PlaceOf(name), put(name, std::move(text));
-    parsed[r] = {};
+  std::vector<BlockColumns> blocks(Blocks(table));
+  ParallelFor(blocks.size(), threads, [&](std::size_t block) { blocks[block] = ColumnsOf(table, block); });
+  OrderedNames columns;
+  std::size_t hint = 0;
+  const auto add = [&](const std::vector<std::string>& names) {
+    for (const std::string& name : names) columns.Add(name, &hint);
+  };
+  add(kFirst);
+  add(list.extra_columns);
+  add(kOfTask);
+  add(FixedResultColumns());
+  for (BlockColumns& block : blocks) {
+    add(block.names.names());
+    for (const auto& [verdict, count] : block.verdicts) table.verdicts[verdict] += count;
   }
-  table.columns = columns.names();
+  table.columns = std::move(columns.names());
   return table;
+}
+
+RowTexts::RowTexts(const ResultTable& table) : table_(table), reader_(*table.records), texts_(table.columns.size()) {
+  for (std::size_t i = 0; i < table.columns.size(); ++i) places_.emplace(table.columns[i], i);
+}
+
+const std::vector<std::string>& RowTexts::Of(const ResultTable::Row& row) {
+  for (std::string& text : texts_) text.clear();
+  std::size_t place = 0;
+  const auto put = [&](std::string_view name, std::string_view text) {
+    if (place + 1 >= table_.columns.size() || table_.columns[++place] != name) place = places_.at(name);
+    texts_[place] = text;
+  };
+  put("id", row.task->id);
+  put("file", row.task->file);
+  for (std::size_t i = 0; i < table_.list->extra_columns.size(); ++i)
+    put(table_.list->extra_columns[i], row.task->extra[i]);
+  put("status", NameOf(row.done->status));
+  put("message", row.done->message);
+  put("sha256", row.done->sha256);
+  put("key", row.done->key);
+  const std::string_view result = reader_.Read(*row.done);
+  if (result.empty()) return texts_;
+  FlatJson json(result);
+  while (json.Next()) put(json.name(), json.kind() == FlatJson::Kind::kNull ? "" : json.value());
+  return texts_;
 }
 
 std::string Said(const std::string& id, const std::string& message) {
@@ -121,67 +188,76 @@ std::vector<std::string> ReservedColumns() {
   return names;
 }
 
-std::string ToCsv(const ResultTable& table) {
-  std::string text;
-  AppendLine(table.columns, &text);
-  std::vector<std::string> fields;
-  for (const ResultTable::Row& row : table.rows) {
-    fields.assign(table.columns.size(), "");
-    for (const auto& [column, cell] : row.cells) fields[column] = cell;
-    AppendLine(fields, &text);
-  }
-  return text;
+void WriteCsv(const ResultTable& table, int threads, std::ostream& out) {
+  std::string head;
+  AppendLine(table.columns, &head);
+  out << head;
+  WriteBlocks(table, threads, out, [&](std::size_t block) {
+    std::string text;
+    RowTexts texts(table);
+    ForBlock(table, block, [&](const ResultTable::Row& row) { AppendLine(texts.Of(row), &text); });
+    return text;
+  });
 }
 
-std::string ToJsonLines(const ResultTable& table) {
-  std::string text;
-  for (const ResultTable::Row& row : table.rows) {
-    nlohmann::ordered_json json = {{"id", row.task->id}, {"file", row.task->file}};
-    for (std::size_t i = 0; i < row.task->extra.size(); ++i)
-      json[table.columns[kFirst.size() + i]] = row.task->extra[i];
-    json["status"] = NameOf(row.done->status);
-    json["message"] = row.done->message;
-    json["sha256"] = row.done->sha256;
-    json["key"] = row.done->key;
-    std::string line = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-    line.pop_back();
-    text += line;
-    text += ",\"result\":";
-    text += row.done->row.empty() ? std::string_view("null") : row.done->row;
-    text += "}\n";
-  }
-  return text;
+void WriteJsonLines(const ResultTable& table, int threads, std::ostream& out) {
+  WriteBlocks(table, threads, out, [&](std::size_t block) {
+    std::string text;
+    RowReader reader(*table.records);
+    ForBlock(table, block, [&](const ResultTable::Row& row) {
+      nlohmann::ordered_json json = {{"id", row.task->id}, {"file", row.task->file}};
+      for (std::size_t i = 0; i < row.task->extra.size(); ++i) json[table.list->extra_columns[i]] = row.task->extra[i];
+      json["status"] = NameOf(row.done->status);
+      json["message"] = row.done->message;
+      json["sha256"] = row.done->sha256;
+      json["key"] = row.done->key;
+      std::string line = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+      line.pop_back();
+      const std::string_view result = reader.Read(*row.done);
+      text += line;
+      text += ",\"result\":";
+      text += result.empty() ? "null" : result;
+      text += "}\n";
+    });
+    return text;
+  });
 }
 
-std::string RunsToCsv(const WorkList& list, const Records& records) {
-  std::unordered_map<std::string, std::string> settings;
-  for (const Task& task : list.tasks) settings.emplace(task.id, task.settings);
-  const std::unordered_map<std::string, const DoneRecord*> latest = LatestDone(records, settings);
+void WriteRuns(const ResultTable& table, std::ostream& out) {
+  std::unordered_set<const DoneRecord*> counts;
+  for (const ResultTable::Row& row : table.rows) counts.insert(row.done);
   struct Run {
     double begun;
-    std::vector<std::string> fields;
+    std::string_view id;
+    const DoneRecord* done;  // null: of a death
+    std::size_t segment;
   };
   std::vector<Run> runs;
-  for (const DoneRecord& done : records.done) {
-    const auto counts = latest.find(done.id);
-    const Segment& segment = records.segments[done.segment];
-    const double begun = done.at - done.seconds;
-    runs.push_back({begun,
-                    {done.id, NameOf(done.status), counts != latest.end() && counts->second == &done ? "yes" : "no",
-                     UtcText(begun), fmt::format("{:.6f}", done.seconds), std::to_string(done.threads),
-                     fmt::format("{:.1f}", done.peak_mb), segment.host, segment.name}});
+  for (const DoneRecord& done : table.records->done)
+    runs.push_back({done.at - done.seconds, done.id, &done, done.segment});
+  for (const auto& [id, deaths] : table.records->deaths) {
+    for (const StartRecord& start : deaths) runs.push_back({start.at, id, nullptr, start.segment});
   }
-  for (const auto& [id, deaths] : records.deaths) {
-    for (const StartRecord& start : deaths) {
-      const Segment& segment = records.segments[start.segment];
-      runs.push_back({start.at, {id, "died", "no", UtcText(start.at), "", "", "", segment.host, segment.name}});
+  // Of two that began at once in one segment the first line stays first.
+  std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
+    return std::tie(a.begun, a.id, a.segment) < std::tie(b.begun, b.id, b.segment);
+  });
+  out << "id,status,counts,begun,seconds,threads,peak_mb,host,segment\n";
+  std::string line;
+  for (const Run& run : runs) {
+    const Segment& segment = table.records->segments[run.segment];
+    line.clear();
+    if (run.done == nullptr) {
+      AppendLine({std::string(run.id), "died", "no", UtcText(run.begun), "", "", "", segment.host, segment.name},
+                 &line);
+    } else {
+      AppendLine({std::string(run.id), NameOf(run.done->status), counts.contains(run.done) ? "yes" : "no",
+                  UtcText(run.begun), fmt::format("{:.6f}", run.done->seconds), std::to_string(run.done->threads),
+                  fmt::format("{:.1f}", run.done->peak_mb), segment.host, segment.name},
+                 &line);
     }
+    out << line;
   }
-  std::sort(runs.begin(), runs.end(),
-            [](const Run& a, const Run& b) { return a.begun != b.begun ? a.begun < b.begun : a.fields < b.fields; });
-  std::string text = "id,status,counts,begun,seconds,threads,peak_mb,host,segment\n";
-  for (const Run& run : runs) AppendLine(run.fields, &text);
-  return text;
 }
 
 }  // namespace lobefit

@@ -4,7 +4,10 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <ostream>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "lobefit/batch/list/work_list.h"
@@ -15,26 +18,44 @@ namespace lobefit {
 // Exit code of a batch that has tasks which are still missing; beside those of ExitCode.
 inline constexpr int kExitMissing = 5;
 
-// A row is a task that is done. Every text is that of the table: nothing of it depends on the machine or the moment.
+// A row is a task that is done; what it holds is read when it is asked for. Every text is that of the table: nothing of
+// it depends on the machine or the moment.
 struct ResultTable {
+  const WorkList* list;
+  const Records* records;
   // id, file, the list's own columns, status, verdict, message, sha256, key, then those of FixedResultColumns and of
   // every parameter that occurs, in the order of first occurrence by id.
   std::vector<std::string> columns;
   struct Row {
     const Task* task;
     const DoneRecord* done;
-    std::vector<std::pair<std::size_t, std::string>> cells;  // column and text; others are empty
   };
   std::vector<Row> rows;             // by id
   std::vector<const Task*> missing;  // by id
   std::map<TaskStatus, std::size_t> totals;
+  std::map<std::string, std::size_t> verdicts;
 
   // 0: all fitted; 4: all done, but some failed or do not describe their data; 5: some are missing.
   int ExitCode() const;
 };
 
-// Both must outlive the table.
+// Both must outlive the table. On `threads` threads, as what follows.
 ResultTable MakeTable(const WorkList& list, const Records& records, int threads);
+
+// The texts of rows, each by column; an empty one where there is nothing. For one thread.
+class RowTexts {
+ public:
+  // The table must outlive the object.
+  explicit RowTexts(const ResultTable& table);
+  // Valid until the next call.
+  const std::vector<std::string>& Of(const ResultTable::Row& row);
+
+ private:
+  const ResultTable& table_;
+  RowReader reader_;
+  std::unordered_map<std::string_view, std::size_t> places_;
+  std::vector<std::string> texts_;
+};
 
 // What is said of a task on one line: its id and the message, which often begins with the file's name already.
 std::string Said(const std::string& id, const std::string& message);
@@ -43,10 +64,10 @@ std::string Said(const std::string& id, const std::string& message);
 std::vector<std::string> ReservedColumns();
 
 // results.csv and results.jsonl, the same bytes wherever and in whatever order the work was done.
-std::string ToCsv(const ResultTable& table);
-std::string ToJsonLines(const ResultTable& table);
+void WriteCsv(const ResultTable& table, int threads, std::ostream& out);
+void WriteJsonLines(const ResultTable& table, int threads, std::ostream& out);
 // runs.csv: every fit that was recorded, also those that another one replaced and those that died, with host, start,
 // duration, threads and the largest memory of its process so far.
-std::string RunsToCsv(const WorkList& list, const Records& records);
+void WriteRuns(const ResultTable& table, std::ostream& out);
 
 }  // namespace lobefit

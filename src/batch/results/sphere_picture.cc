@@ -1,7 +1,9 @@
 #include "lobefit/batch/results/sphere_picture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include <opencv2/core.hpp>
@@ -38,6 +40,9 @@ Measurement NearLight(const Measurement& measurement) {
   return near;
 }
 
+// The last two bits are not seen in so small a picture, and would make it half as long again: a page holds a thousand.
+std::uint8_t Coarse(std::uint8_t value) { return static_cast<std::uint8_t>(std::min(255, (value + 2) / 4 * 4)); }
+
 void Paint(const LitSphere& sphere, double exposure, int left, cv::Mat* picture) {
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
@@ -49,7 +54,7 @@ void Paint(const LitSphere& sphere, double exposure, int left, cv::Mat* picture)
       at = {150, 158, 167};
       if (sphere.known[pixel] == 0) continue;
       const Rgb color = ToScreen(sphere.color[pixel], exposure);
-      at = {color.r, color.g, color.b};
+      at = {Coarse(color.r), Coarse(color.g), Coarse(color.b)};
     }
   }
 }

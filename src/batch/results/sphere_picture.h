@@ -13,7 +13,7 @@ struct SpherePicture {
   bool measured = false;  // the measured sphere stands left of the fitted one
 };
 
-// Spheres of 64 pixels, with a palette. A measured one only of isotropic measurements that speak for nearly the whole
+// Spheres of 64 pixels, in 6 bits a channel. A measured one only of isotropic measurements that speak for nearly the whole
 // sphere, as in reports; the same exposure for both.
 SpherePicture DrawSpheres(const Material& material, const Measurement& measurement);
 

@@ -1,7 +1,9 @@
 #include "lobefit/batch/run/journal.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <random>
@@ -11,6 +13,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
@@ -20,8 +23,16 @@
 namespace lobefit {
 namespace {
 
-constexpr std::size_t kMostUnsynced = 64;
-constexpr std::chrono::seconds kLongestUnsynced{1};
+constexpr std::size_t kMostHeld = 64;
+constexpr std::chrono::milliseconds kGathering{100};
+
+// Lines that may wait: each has some files, whose descriptors must not use up those of the process.
+std::size_t MostHeld() {
+  constexpr rlim_t kEach = 16;
+  rlimit limit = {};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return 1;
+  return static_cast<std::size_t>(std::clamp<rlim_t>(limit.rlim_cur / kEach, 1, kMostHeld));
+}
 
 std::string FirstLineOf(const char* path) {
   std::ifstream file(path);
@@ -72,7 +83,7 @@ bool IsRunning(const Writer& writer) {
   return writer.host == here.host && writer.space == here.space && StartTicks(writer.pid) == writer.start_ticks;
 }
 
-Journal::Journal(std::filesystem::path folder) : folder_(std::move(folder)) {
+Journal::Journal(std::filesystem::path folder) : folder_(std::move(folder)), most_held_(MostHeld()) {
   // Processes of two containers may share host name and number.
   std::random_device random;
   const std::uint64_t number = (std::uint64_t{random()} << 32) | random();
@@ -80,15 +91,12 @@ Journal::Journal(std::filesystem::path folder) : folder_(std::move(folder)) {
 }
 
 Journal::~Journal() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    quit_ = true;
+  try {
+    Close();
+  } catch (const std::exception&) {
+    // What is lost is done again.
   }
-  wake_.notify_all();
-  if (syncer_.joinable()) syncer_.join();
-  if (descriptor_ < 0) return;
-  fdatasync(descriptor_);
-  close(descriptor_);
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
 void Journal::Open() {
@@ -108,7 +116,6 @@ void Journal::Open() {
     fsync(folder);
     close(folder);
   }
-  syncer_ = std::thread([this] { SyncEverySecond(); });
 }
 
 void Journal::FailToWrite(int reason) const {
@@ -140,7 +147,7 @@ void Journal::Write(std::string_view text) {
 
 void Journal::Reserve() {
   constexpr std::int64_t kStep = 1 << 16, kLeast = 1 << 13;
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(write_mutex_);
   if (descriptor_ < 0) Open();
   if (reserved_ - size_ >= kLeast) return;
   reserved_ = size_ + kStep;
@@ -149,25 +156,71 @@ void Journal::Reserve() {
   FailToWrite(errno);
 }
 
-void Journal::Append(std::string_view line, bool matters) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+void Journal::Append(std::string_view line) {
+  const std::lock_guard<std::mutex> lock(write_mutex_);
   if (descriptor_ < 0) Open();
   std::string text(line);
   Write(text += '\n');
-  if (!matters) return;
-  if (++unsynced_ >= kMostUnsynced) Sync();
 }
 
-void Journal::Sync() {
-  unsynced_ = 0;
-  fdatasync(descriptor_);
-}
-
-void Journal::SyncEverySecond() {
+void Journal::Commit(std::string line, FileGroup files) {
+  line += '\n';
+  if (files.IsEmpty()) {
+    const std::lock_guard<std::mutex> lock(write_mutex_);
+    if (descriptor_ < 0) Open();
+    Write(std::exchange(line, ""));
+  }
   std::unique_lock<std::mutex> lock(mutex_);
-  while (!quit_) {
-    wake_.wait_for(lock, kLongestUnsynced);
-    if (unsynced_ > 0) Sync();
+  if (!bringer_.joinable()) bringer_ = std::thread([this] { BringGroups(); });
+  changed_.wait(lock, [&] { return held_ < most_held_ || error_; });
+  if (error_) std::rethrow_exception(error_);
+  waiting_.lines += line;
+  waiting_.files.Take(std::move(files));
+  ++waiting_.size;
+  ++held_;
+  changed_.notify_all();
+}
+
+void Journal::Close() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    quit_ = true;
+  }
+  changed_.notify_all();
+  if (bringer_.joinable()) bringer_.join();
+  if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+}
+
+void Journal::Bring(Group group) {
+  group.files.Commit();
+  const std::lock_guard<std::mutex> lock(write_mutex_);
+  if (descriptor_ < 0) Open();
+  Write(group.lines);
+  // EINVAL: a file system without anything to bring to a disk.
+  if (fdatasync(descriptor_) != 0 && errno != EINVAL) FailToWrite(errno);
+}
+
+void Journal::BringGroups() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [&] { return waiting_.size > 0 || quit_; });
+    changed_.wait_for(lock, kGathering, [&] { return waiting_.size >= most_held_ || quit_; });
+    if (waiting_.size == 0) return;
+    Group group = std::exchange(waiting_, {});
+    const std::size_t size = group.size;
+    lock.unlock();
+    std::exception_ptr error;
+    try {
+      Bring(std::move(group));
+    } catch (...) {
+      error = std::current_exception();
+    }
+    lock.lock();
+    held_ -= size;
+    if (error) error_ = error;
+    changed_.notify_all();
+    // What failed once is left to another time, with all that came after it.
+    if (error_) return;
   }
 }
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "lobefit/base/file.h"
 #include "lobefit/batch/run/run.h"
+#include "lobefit/batch/run/task_files.h"
 
 namespace lobefit {
 namespace {
@@ -15,20 +15,16 @@ bool IsInPlace(const DoneRecord& done, const std::filesystem::path& out) {
   return !error && bytes == done.document_bytes;
 }
 
-// Whether the file is the one that was read then. A file that was written within the clock's step before it was read
+// Whether the files are those that were read then. A file that was written within the clock's step before it was read
 // could have been written again without another stamp, so that its content is compared.
-bool IsSameFile(const DoneRecord& done, const Task& task) {
-  const FileStamp stamp = StampOf(task.path);
+bool AreSameFiles(const DoneRecord& done, const Task& task) {
   constexpr double kClockStep = 2, kNanosecond = 1e-9;
   const double begun = done.at - done.seconds;
-  const bool settled =
-      static_cast<double>(std::max(stamp.modified_ns, stamp.changed_ns)) * kNanosecond + kClockStep < begun;
-  if (stamp == done.stamp && (settled || stamp == FileStamp())) return true;
-  try {
-    return Sha256Hex(FileBytes(task.path).bytes()) == done.sha256;
-  } catch (const std::exception&) {
-    return done.sha256.empty();
-  }
+  const std::vector<FileStamp> stamps = StampsOf(task);
+  const bool settled = std::all_of(stamps.begin(), stamps.end(), [&](const FileStamp& stamp) {
+    return static_cast<double>(std::max(stamp.modified_ns, stamp.changed_ns)) * kNanosecond + kClockStep < begun;
+  });
+  return (settled && stamps == done.stamps) || ContentSha256(task) == done.sha256;
 }
 
 }  // namespace
@@ -49,7 +45,7 @@ Plan MakePlan(const WorkList& list, const Records& records, const RunOptions& op
       const DoneRecord& record = *done->second;
       const bool retry =
           options.retry_failed && (record.status == TaskStatus::kFailed || record.status == TaskStatus::kCrashed);
-      const bool same = IsSameFile(record, task);
+      const bool same = AreSameFiles(record, task);
       if (!retry && same && IsInPlace(record, out)) {
         ++plan.counts.done_before;
         continue;

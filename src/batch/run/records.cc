@@ -1,124 +1,105 @@
 #include "lobefit/batch/run/records.h"
 
 #include <algorithm>
-#include <array>
+#include <cerrno>
 #include <chrono>
-#include <fstream>
-#include <optional>
+#include <cstring>
 
-#include <nlohmann/json.hpp>
-#include <sys/stat.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"
-#include "lobefit/batch/run/journal.h"
+#include "lobefit/batch/run/segment_lines.h"
 
 namespace lobefit {
 namespace {
 
-using Json = nlohmann::ordered_json;
+class SegmentFile {
+ public:
+  explicit SegmentFile(const std::filesystem::path& path)
+      : path_(path), number_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (number_ < 0) Fail();
+  }
+  ~SegmentFile() { close(number_); }
+  SegmentFile(const SegmentFile&) = delete;
+  SegmentFile& operator=(const SegmentFile&) = delete;
 
-constexpr std::array<const char*, 4> kStatusNames = {"fitted", "doubtful", "failed", "crashed"};
-// Before the object of a result's columns, which is the last member of its line. A quote within a string has a
-// backslash before it, so that this is not found in one.
-constexpr std::string_view kRow = ",\"row\":{";
+  // As far as the file goes.
+  std::string Read(std::uint64_t begin, std::uint64_t end) const {
+    std::string text(end - begin, '\0');
+    std::size_t size = 0;
+    while (size < text.size()) {
+      const ssize_t count = pread(number_, text.data() + size, text.size() - size, static_cast<off_t>(begin + size));
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) Fail();
+      if (count == 0) break;
+      size += static_cast<std::size_t>(count);
+    }
+    text.resize(size);
+    return text;
+  }
 
-struct Parsed {
-  std::vector<DoneRecord> done;
-  std::vector<StartRecord> started;
-  std::vector<std::string> ended;  // ids of those that were begun here or in an earlier piece
-  Writer writer;
-  std::size_t lines_lost = 0;
+ private:
+  [[noreturn]] void Fail() const {
+    throw InputError(path_.string() + ": cannot be read: " + std::strerror(errno) + "; check the permissions");
+  }
+  const std::filesystem::path path_;
+  const int number_;
 };
 
-std::optional<TaskStatus> StatusFrom(const std::string& name) {
-  for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
-    if (name == kStatusNames[i]) return static_cast<TaskStatus>(i);
+// Most tasks end in the piece in which they began: only the others need be remembered.
+void ForgetEnded(SegmentLines* lines) {
+  std::unordered_map<std::string, StartRecord> open_tasks;
+  for (StartRecord& start : lines->started) open_tasks.insert_or_assign(start.id, std::move(start));
+  std::vector<std::string> ended_elsewhere;
+  for (std::string& id : lines->ended) {
+    if (open_tasks.erase(id) == 0) ended_elsewhere.push_back(std::move(id));
   }
-  return std::nullopt;
+  lines->started.clear();
+  for (auto& [id, start] : open_tasks) lines->started.push_back(std::move(start));
+  lines->ended = std::move(ended_elsewhere);
 }
 
-DoneRecord DoneFrom(const Json& json, std::string_view row) {
-  const Json& stamp = json.at("stamp");
-  const std::optional<TaskStatus> status = StatusFrom(json.at("status").get<std::string>());
-  if (!status) throw InputError("status");
-  DoneRecord done;
-  done.id = json.at("done").get<std::string>();
-  done.key = json.at("key").get<std::string>();
-  done.settings = json.at("settings").get<std::string>();
-  done.sha256 = json.at("sha256").get<std::string>();
-  done.stamp = {stamp.at(0).get<std::uint64_t>(), stamp.at(1).get<std::int64_t>(), stamp.at(2).get<std::int64_t>()};
-  done.status = *status;
-  done.exit_code = json.at("exit").get<int>();
-  done.message = json.at("message").get<std::string>();
-  done.document_bytes = json.at("document_bytes").get<std::uint64_t>();
-  done.at = json.at("at").get<double>();
-  done.seconds = json.at("seconds").get<double>();
-  done.peak_mb = json.at("peak_mb").get<double>();
-  done.threads = json.at("threads").get<int>();
-  done.row = row;
-  return done;
-}
-
-void ParseLine(std::string_view line, Parsed* parsed) {
-  std::string_view row;
-  std::string head(line);
-  if (const std::size_t at = line.find(kRow); at != std::string_view::npos) {
-    if (!line.ends_with("}}")) throw InputError("cut short");
-    row = line.substr(at + kRow.size() - 1, line.size() - at - kRow.size());
-    head = std::string(line.substr(0, at)) + "}";
+// The lines of a segment that begin in [begin, end).
+SegmentLines ParseLines(const std::filesystem::path& path, std::uint64_t begin, std::uint64_t end) {
+  constexpr std::uint64_t kStep = 1 << 16;
+  const SegmentFile file(path);
+  // From the byte before, which tells whether a line begins here, to the end of the last line.
+  std::uint64_t offset = begin == 0 ? 0 : begin - 1;
+  std::string text = file.Read(offset, end);
+  std::size_t searched = text.empty() ? 0 : text.size() - 1;
+  while (text.find('\n', searched) == std::string::npos) {
+    searched = text.size();
+    const std::string more = file.Read(offset + text.size(), offset + text.size() + kStep);
+    if (more.empty()) break;
+    text += more;
   }
-  const Json json = Json::parse(head);
-  if (json.contains("done")) {
-    parsed->done.push_back(DoneFrom(json, row));
-    parsed->ended.push_back(parsed->done.back().id);
-  } else if (json.contains("left")) {
-    parsed->ended.push_back(json.at("left").get<std::string>());
-  } else if (json.contains("start")) {
-    parsed->started.push_back({json.at("start").get<std::string>(), json.at("at").get<double>(), 0});
-  } else if (json.contains("segment")) {
-    parsed->writer = {json.at("host").get<std::string>(), json.at("pid").get<long>(),
-                      json.at("start_ticks").get<std::uint64_t>(), json.at("space").get<std::string>()};
+  std::string_view rest = text;
+  if (begin > 0) {
+    const std::size_t first = rest.find('\n');
+    rest.remove_prefix(first == std::string_view::npos ? rest.size() : first + 1);
+    offset += text.size() - rest.size();
   }
-}
-
-// A share of a segment's lines.
-Parsed ParseLines(std::string_view text) {
-  Parsed parsed;
-  LineReader lines(text);
+  SegmentLines parsed;
+  LineReader lines(rest);
   std::string_view line;
-  while (lines.Next(&line)) {
+  while (offset + lines.offset() < end && lines.Next(&line)) {
     if (line.empty()) continue;
+    const std::size_t known = parsed.done.size();
     try {
-      ParseLine(line, &parsed);
+      ParseLine(line, static_cast<std::uint64_t>(line.data() - rest.data()), &parsed);
     } catch (const std::exception&) {
       ++parsed.lines_lost;
     }
+    // Places count from the beginning of the piece.
+    if (parsed.done.size() == known) continue;
+    parsed.done.back().row_offset += offset;
+    parsed.done.back().picture_offset += offset;
   }
+  ForgetEnded(&parsed);
   return parsed;
-}
-
-std::shared_ptr<const std::string> ReadText(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  auto text = std::make_shared<std::string>(file ? static_cast<std::size_t>(file.tellg()) : 0, '\0');
-  file.seekg(0);
-  file.read(text->data(), static_cast<std::streamsize>(text->size()));
-  if (!file) throw InputError(path.string() + ": cannot be read; check the permissions");
-  return text;
-}
-
-// Pieces of at most some megabytes that end with a line.
-std::vector<std::string_view> Pieces(std::string_view text) {
-  constexpr std::size_t kPiece = std::size_t{1} << 22;
-  std::vector<std::string_view> pieces;
-  while (!text.empty()) {
-    const std::size_t end =
-        text.size() <= kPiece ? text.size() : std::min(text.find('\n', kPiece), text.size() - 1) + 1;
-    pieces.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-  return pieces;
 }
 
 // The better one of two records with one key, else the later one.
@@ -129,55 +110,10 @@ bool Replaces(const DoneRecord& next, const DoneRecord& held) {
 
 }  // namespace
 
-std::string NameOf(TaskStatus status) { return kStatusNames[static_cast<std::size_t>(status)]; }
-
-FileStamp StampOf(const std::filesystem::path& path) {
-  struct stat status = {};
-  if (stat(path.c_str(), &status) != 0) return {};
-  constexpr std::int64_t kBillion = 1000000000;
-  return {static_cast<std::uint64_t>(status.st_size), status.st_mtim.tv_sec * kBillion + status.st_mtim.tv_nsec,
-          status.st_ctim.tv_sec * kBillion + status.st_ctim.tv_nsec};
-}
-
 double Now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
-std::string ToLine(const StartRecord& start) {
-  return Json({{"start", start.id}, {"at", start.at}}).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string LeftLine(const std::string& id) {
-  return Json({{"left", id}}).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string ToLine(const DoneRecord& done) {
-  const Json json = {{"done", done.id},
-                     {"key", done.key},
-                     {"settings", done.settings},
-                     {"sha256", done.sha256},
-                     {"stamp", {done.stamp.bytes, done.stamp.modified_ns, done.stamp.changed_ns}},
-                     {"status", NameOf(done.status)},
-                     {"exit", done.exit_code},
-                     {"message", done.message},
-                     {"document_bytes", done.document_bytes},
-                     {"at", done.at},
-                     {"seconds", done.seconds},
-                     {"peak_mb", done.peak_mb},
-                     {"threads", done.threads}};
-  std::string line = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (done.row.empty()) return line;
-  line.pop_back();
-  line += kRow.substr(0, kRow.size() - 1);
-  line += done.row;
-  return line + "}";
-}
-
-DoneRecord DoneFromLine(std::string_view line) {
-  Parsed parsed;
-  ParseLine(line, &parsed);
-  return std::move(parsed.done.at(0));
-}
-
 Records ReadRecords(const std::filesystem::path& out, int threads) {
+  constexpr std::uint64_t kPiece = std::uint64_t{1} << 22;
   Records records;
   std::vector<std::filesystem::path> paths;
   std::error_code error;
@@ -187,16 +123,18 @@ Records ReadRecords(const std::filesystem::path& out, int threads) {
   std::sort(paths.begin(), paths.end());
   struct Piece {
     std::size_t segment;
-    std::string_view text;
+    std::uint64_t begin, end;
   };
   std::vector<Piece> pieces;
   for (const std::filesystem::path& path : paths) {
-    records.segments.push_back({path.stem().string(), "", false, ReadText(path), 0});
-    for (const std::string_view text : Pieces(*records.segments.back().text))
-      pieces.push_back({records.segments.size() - 1, text});
+    const std::uint64_t bytes = std::filesystem::file_size(path);
+    for (std::uint64_t begin = 0; begin < bytes; begin += kPiece)
+      pieces.push_back({records.segments.size(), begin, std::min(begin + kPiece, bytes)});
+    records.segments.push_back({path.stem().string(), "", false, path, 0});
   }
-  std::vector<Parsed> parsed(pieces.size());
-  ParallelFor(pieces.size(), threads, [&](std::size_t i) { parsed[i] = ParseLines(pieces[i].text); });
+  std::vector<SegmentLines> parsed(pieces.size());
+  ParallelFor(pieces.size(), threads,
+              [&](std::size_t i) { parsed[i] = ParseLines(paths[pieces[i].segment], pieces[i].begin, pieces[i].end); });
 
   std::vector<std::unordered_map<std::string, StartRecord>> open(paths.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -217,12 +155,44 @@ Records ReadRecords(const std::filesystem::path& out, int threads) {
       open[s][start.id] = std::move(start);
     }
     for (const std::string& id : parsed[i].ended) open[s].erase(id);
+    parsed[i] = {};
   }
   for (std::size_t s = 0; s < paths.size(); ++s) {
     if (records.segments[s].is_running) continue;
     for (auto& [id, start] : open[s]) records.deaths[id].push_back(start);
   }
   return records;
+}
+
+RowReader::~RowReader() {
+  for (const auto& [segment, descriptor] : descriptors_) close(descriptor);
+}
+
+std::string_view RowReader::Read(const DoneRecord& done) {
+  return done.row_bytes == 0 ? done.row : ReadPlace(done, done.row_offset, done.row_bytes);
+}
+
+std::string_view RowReader::ReadPicture(const DoneRecord& done) {
+  return done.picture_bytes == 0 ? done.picture : ReadPlace(done, done.picture_offset, done.picture_bytes);
+}
+
+std::string_view RowReader::ReadPlace(const DoneRecord& done, std::uint64_t offset, std::uint64_t bytes) {
+  constexpr std::size_t kMostOpen = 64;
+  const std::filesystem::path& path = records_.segments[done.segment].path;
+  auto descriptor = descriptors_.find(done.segment);
+  if (descriptor == descriptors_.end()) {
+    if (descriptors_.size() == kMostOpen) {
+      for (const auto& [segment, number] : descriptors_) close(number);
+      descriptors_.clear();
+    }
+    const int number = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (number < 0) throw InputError(path.string() + ": cannot be read: " + std::strerror(errno));
+    descriptor = descriptors_.emplace(done.segment, number).first;
+  }
+  text_.resize(bytes);
+  if (pread(descriptor->second, text_.data(), bytes, static_cast<off_t>(offset)) != static_cast<ssize_t>(bytes))
+    throw InputError(path.string() + ": changed while it was read; start the same command again");
+  return text_;
 }
 
 std::unordered_map<std::string, const DoneRecord*> LatestDone(

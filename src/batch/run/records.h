@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -26,13 +25,10 @@ struct FileStamp {
 
   bool operator==(const FileStamp&) const = default;
 };
-// All zero where there is no such file.
-FileStamp StampOf(const std::filesystem::path& path);
-
 // A task that is done: one line of a segment.
 struct DoneRecord {
   std::string id, key, settings, sha256;
-  FileStamp stamp;
+  std::vector<FileStamp> stamps;  // of the task's files, in their order
   TaskStatus status = TaskStatus::kFailed;
   int exit_code = 0;  // of `lobefit fit`
   std::string message;
@@ -40,9 +36,14 @@ struct DoneRecord {
   double at = 0, seconds = 0;        // end, since 1970; duration
   double peak_mb = 0;                // largest memory of the process so far
   int threads = 1;
-  // The columns of the result as a JSON object; empty where there is no document. Lies in the text of the segment.
-  std::string_view row;
-  std::size_t segment = 0;  // index into Records::segments
+  // The columns of the result as a JSON object; empty where there is no document. Of records that were read it stays in
+  // the segment, and RowReader gives it.
+  std::string row;
+  // The spheres of the overview as PNG in base64, of which the same holds; empty where there are none.
+  std::string picture;
+  bool picture_is_measured = false;  // the measured sphere stands left of the fitted one
+  std::size_t segment = 0;           // index into Records::segments
+  std::uint64_t row_offset = 0, row_bytes = 0, picture_offset = 0, picture_bytes = 0;
 };
 
 // A task that was begun.
@@ -55,7 +56,7 @@ struct StartRecord {
 struct Segment {
   std::string name, host;
   bool is_running = false;  // its process is known to
-  std::shared_ptr<const std::string> text;
+  std::filesystem::path path;
   std::size_t lines_lost = 0;  // cut short by a death or a full disk
 };
 
@@ -69,13 +70,36 @@ struct Records {
 // Reads every segment below out/segments, on `threads` threads. Lines that are not whole are counted and passed over.
 Records ReadRecords(const std::filesystem::path& out, int threads);
 
+// Rows of records: a hundred thousand need not be in memory at once. For one thread.
+class RowReader {
+ public:
+  // The records must outlive the object.
+  explicit RowReader(const Records& records) : records_(records) {}
+  ~RowReader();
+  RowReader(const RowReader&) = delete;
+  RowReader& operator=(const RowReader&) = delete;
+
+  // DoneRecord::row and picture; valid until the next call. Throw InputError where the segment does not hold it any more.
+  std::string_view Read(const DoneRecord& done);
+  std::string_view ReadPicture(const DoneRecord& done);
+
+ private:
+  std::string_view ReadPlace(const DoneRecord& done, std::uint64_t offset, std::uint64_t bytes);
+
+  const Records& records_;
+  std::unordered_map<std::size_t, int> descriptors_;  // by segment
+  std::string text_;
+};
+
 // The lines of a segment.
 std::string ToLine(const StartRecord& start);
+// Two lines where there is a picture, which comes first.
 std::string ToLine(const DoneRecord& done);
-// Of a task that was begun and is left to another time, since its results cannot be written.
-std::string LeftLine(const std::string& id);
-// The record of one line; its `row` lies in `line`. Throws an exception for a line that is not whole.
-DoneRecord DoneFromLine(std::string_view line);
+// Of a task whose process outlived it: written at once, while what it gave is on its way to the disk or cannot be
+// written.
+std::string EndedLine(const std::string& id);
+// The record of ToLine, with its row and picture. Throws an exception for one that is not whole.
+DoneRecord DoneFromLine(std::string_view text);
 
 // Seconds since 1970.
 double Now();

@@ -16,6 +16,7 @@
 #include "lobefit/base/file.h"
 #include "lobefit/batch/run/journal.h"
 #include "lobefit/batch/run/memory_limit.h"
+#include "lobefit/batch/run/task_files.h"
 
 namespace lobefit {
 namespace {
@@ -26,20 +27,12 @@ double PeakMegabytes(int who) {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-// Empty where the file cannot be read.
-std::string ContentSha256(const Task& task) {
-  try {
-    return Sha256Hex(FileBytes(task.path).bytes());
-  } catch (const Error&) {
-    return "";
-  }
-}
-
-// The message with the file as it was listed, which is the same on every machine.
+// The message with files as they were listed, which is the same on every machine.
 std::string WithoutFolder(std::string message, const Task& task) {
-  const std::string path = task.path.string();
-  for (std::size_t at = message.find(path); at != std::string::npos; at = message.find(path, at + task.file.size()))
-    message.replace(at, path.size(), task.file);
+  const std::string path = task.members.empty() ? task.path.string() : (task.path / "").string();
+  const std::string listed = task.members.empty() ? task.file : "";
+  for (std::size_t at = message.find(path); at != std::string::npos; at = message.find(path, at + listed.size()))
+    message.replace(at, path.size(), listed);
   return message;
 }
 
@@ -50,12 +43,12 @@ Outcome Attempt(const Work& work, const Task& task, int threads) {
   } catch (const OutputError&) {
     throw;
   } catch (const Error& error) {
-    return {TaskStatus::kFailed, error.exit_code(), error.what(), "", 0, ""};
+    return {TaskStatus::kFailed, error.exit_code(), error.what(), "", 0, "", {}};
   } catch (const std::bad_alloc&) {
     constexpr const char* kCure = "out of memory; choose a part of the file with --theta-i, or fewer --jobs";
-    return {TaskStatus::kFailed, kExitOther, kCure, "", 0, ""};
+    return {TaskStatus::kFailed, kExitOther, kCure, "", 0, "", {}};
   } catch (const std::exception& error) {
-    return {TaskStatus::kFailed, kExitOther, error.what(), "", 0, ""};
+    return {TaskStatus::kFailed, kExitOther, error.what(), "", 0, "", {}};
   }
 }
 
@@ -78,10 +71,16 @@ class Runner {
   void Crashed(const Task& task) {
     DoneRecord record = Begin(task, 1);
     Commit(task, &record,
-           {TaskStatus::kCrashed, kExitOther,
+           {TaskStatus::kCrashed,
+            kExitOther,
             "the process that fitted it died twice, perhaps for want of memory; --retry-failed tries again, by itself",
-            "", 0, ""});
+            "",
+            0,
+            "",
+            {}});
   }
+
+  void Close() { journal_.Close(); }
 
  private:
   DoneRecord Begin(const Task& task, int threads) {
@@ -89,28 +88,32 @@ class Runner {
     record.at = Now();
     record.id = task.id;
     record.settings = task.settings;
-    record.stamp = StampOf(task.path);
+    record.stamps = StampsOf(task);
     record.threads = threads;
     journal_.Reserve();
-    journal_.Append(ToLine(StartRecord{task.id, record.at, 0}), false);
+    journal_.Append(ToLine(StartRecord{task.id, record.at, 0}));
     return record;
   }
 
-  // A task whose results cannot be written did not kill its process, and must not be taken for one that did.
+  // A task whose results cannot be written, or are lost on their way to the disk, did not kill its process, and must not
+  // be taken for one that did.
   void Finish(const Task& task, DoneRecord* record, const std::function<Outcome()>& attempt) {
+    Outcome outcome;
     try {
-      Commit(task, record, attempt());
+      outcome = attempt();
     } catch (const OutputError&) {
       try {
-        journal_.Append(LeftLine(task.id), false);
+        journal_.Append(EndedLine(task.id));
       } catch (const OutputError&) {
         // Where even that is impossible the task runs by itself next time.
       }
       throw;
     }
+    journal_.Append(EndedLine(task.id));
+    Commit(task, record, std::move(outcome));
   }
 
-  void Commit(const Task& task, DoneRecord* record, const Outcome& outcome) {
+  void Commit(const Task& task, DoneRecord* record, Outcome outcome) {
     const double begun = record->at;
     record->at = Now();
     record->seconds = record->at - begun;
@@ -118,11 +121,13 @@ class Runner {
     record->exit_code = outcome.exit_code;
     record->message = WithoutFolder(outcome.message, task);
     record->document_bytes = outcome.document_bytes;
-    record->row = outcome.row;
+    record->row = std::move(outcome.row);
+    record->picture = std::move(outcome.picture);
+    record->picture_is_measured = outcome.picture_is_measured;
     record->sha256 = outcome.sha256.empty() ? ContentSha256(task) : outcome.sha256;
     record->key = TaskKey(record->sha256, task.settings);
     record->peak_mb = PeakMegabytes(RUSAGE_SELF);
-    journal_.Append(ToLine(*record), true);
+    journal_.Commit(ToLine(*record), std::move(outcome.files));
     done_(*record);
   }
 
@@ -157,7 +162,8 @@ class Runner {
   [[noreturn]] void Speak(const Task& task, int pipe_end) {
     std::string text;
     try {
-      const Outcome outcome = Attempt(work_, task, options_.limits.threads);
+      Outcome outcome = Attempt(work_, task, options_.limits.threads);
+      outcome.files.Commit();
       DoneRecord record;
       record.id = task.id;
       record.status = outcome.status;
@@ -165,6 +171,8 @@ class Runner {
       record.message = outcome.message;
       record.document_bytes = outcome.document_bytes;
       record.row = outcome.row;
+      record.picture = outcome.picture;
+      record.picture_is_measured = outcome.picture_is_measured;
       record.sha256 = outcome.sha256;
       text = "R" + ToLine(record);
     } catch (const std::exception& error) {
@@ -183,8 +191,15 @@ class Runner {
     if (said.starts_with("W")) throw OutputError(said.substr(1));
     if (said.starts_with("R") && WIFEXITED(status) && WEXITSTATUS(status) == 0) {
       const DoneRecord record = DoneFromLine(std::string_view(said).substr(1));
-      return {record.status,           record.exit_code,      record.message,
-              std::string(record.row), record.document_bytes, record.sha256};
+      return {record.status,
+              record.exit_code,
+              record.message,
+              record.row,
+              record.document_bytes,
+              record.sha256,
+              {},
+              record.picture,
+              record.picture_is_measured};
     }
     const std::string how = WIFSIGNALED(status)
                                 ? fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
@@ -196,7 +211,8 @@ class Runner {
                         WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL ? ": out of memory?" : ""),
             "",
             0,
-            ""};
+            "",
+            {}};
   }
 
   const RunOptions& options_;
@@ -216,9 +232,10 @@ void RunPlan(const Plan& plan, const RunOptions& options, const std::filesystem:
   RunScheduled(memory, options.limits, stop,
                [&](std::size_t i, int threads) { runner.Usual(*plan.usual[i], threads); });
   for (const Task* task : plan.suspects) {
-    if (stop) return;
+    if (stop) break;
     runner.Alone(*task);
   }
+  runner.Close();
 }
 
 }  // namespace lobefit

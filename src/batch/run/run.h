@@ -9,6 +9,7 @@
 #include <functional>
 #include <string>
 
+#include "lobefit/base/file_group.h"
 #include "lobefit/batch/list/shard.h"
 #include "lobefit/batch/list/work_list.h"
 #include "lobefit/batch/run/records.h"
@@ -23,10 +24,13 @@ struct Outcome {
   std::string message;
   std::string row;  // columns of the result as a JSON object; empty without a document
   std::uint64_t document_bytes = 0;
-  std::string sha256;  // of the file as it was read; empty where it was not
+  std::string sha256;        // of the file as it was read; empty where it was not
+  FileGroup files;           // its document
+  std::string picture = {};  // DoneRecord::picture
+  bool picture_is_measured = false;
 };
 
-// Fits one task on so many threads and puts its document in place. A failure of the file is an outcome or an exception;
+// Fits one task on so many threads. A failure of the file is an outcome or an exception;
 // OutputError means that results cannot be written and ends the batch. Called from several threads, and in a process of
 // its own.
 using Work = std::function<Outcome(const Task& task, int threads)>;
@@ -56,7 +60,7 @@ Plan MakePlan(const WorkList& list, const Records& records, const RunOptions& op
 // Called after each task, from any thread; the record's row is there for the time of the call.
 using Done = std::function<void(const DoneRecord&)>;
 
-// Runs the plan. Ends early, with what runs finished and written down, once `stop` is set. Throws OutputError where
+// Runs the plan. When it returns all is on the disk. Ends early, with what runs finished and written down, once `stop` is set. Throws OutputError where
 // results cannot be written.
 void RunPlan(const Plan& plan, const RunOptions& options, const std::filesystem::path& out,
              const std::atomic<bool>& stop, const Work& work, const Done& done);

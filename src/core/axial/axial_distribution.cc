@@ -25,9 +25,8 @@ double AxialDistribution::Sigma(const Vec3& u, double* gradient) const {
 
 Ellipsoid AxialDistribution::Outline() const {
   // 1 / (1 - b cos) falls to half its peak where theta^2 = 2 (1 - b) / b.
-  const double width = ndf_.family == AxialFamily::kKagiwadaKalaba
-                           ? std::sqrt(2 * (1 - ndf_.parameter) / ndf_.parameter)
-                           : ndf_.parameter;
+  const double width =
+      ndf_.family == Family::kKagiwadaKalaba ? std::sqrt(2 * (1 - ndf_.parameter) / ndf_.parameter) : ndf_.parameter;
   const double alpha = std::min(width, 1.0);
   return {alpha, alpha, 0, 0, 0};
 }

@@ -30,13 +30,13 @@ double ShadowFunction(double k, double* derivative) {
 // sigma of the unit-integral form (projected-area form for Beckmann and GGX, which have N = 1).
 double UnitSigma(const AxialNdf& ndf, double u, double* dparameter, double* du) {
   switch (ndf.family) {
-    case AxialFamily::kBeckmann:
+    case Family::kBeckmann:
       return BeckmannCrossSection(ndf.parameter, u, dparameter, du);
-    case AxialFamily::kGgx:
+    case Family::kGgx:
       return GgxCrossSection(ndf.parameter, u, dparameter, du);
-    case AxialFamily::kKagiwadaKalaba:
+    case Family::kKagiwadaKalaba:
       return KagiwadaKalabaCrossSection(ndf.parameter, u, dparameter, du);
-    case AxialFamily::kSphericalGaussian:
+    default:  // kSphericalGaussian
       break;
   }
   return SgCrossSection(ndf.parameter, u, dparameter, du);
@@ -46,9 +46,9 @@ double UnitSigma(const AxialNdf& ndf, double u, double* dparameter, double* du) 
 
 double AxialNormalisation(const AxialNdf& ndf, double* dparameter) {
   double norm = 1, slope = 0;  // N and dN / dparameter
-  if (ndf.family == AxialFamily::kKagiwadaKalaba) {
+  if (ndf.family == Family::kKagiwadaKalaba) {
     norm = KagiwadaKalabaCrossSection(ndf.parameter, 1, dparameter != nullptr ? &slope : nullptr);
-  } else if (ndf.family == AxialFamily::kSphericalGaussian) {
+  } else if (ndf.family == Family::kSphericalGaussian) {
     // N = k f(k) / (1 - e^-2k), f = (k - 1 + e^-k) / k^2
     const double alpha = ndf.parameter, k = 2 / (alpha * alpha);
     double f_slope = 0;
@@ -69,7 +69,7 @@ double AxialD(const AxialNdf& ndf, const Vec3& wm, AxialGradient* gradient) {
   double d = 0, dparameter = 0, dcos = 0;
   const double p = ndf.parameter;
   switch (ndf.family) {
-    case AxialFamily::kBeckmann: {
+    case Family::kBeckmann: {
       if (c <= 0) break;
       const double c2 = c * c, tan = std::sqrt(sin2) / (c * p), t = tan * tan;
       if (t > 800) break;  // zero in double precision, where t or 1/c^4 may overflow
@@ -79,7 +79,7 @@ double AxialD(const AxialNdf& ndf, const Vec3& wm, AxialGradient* gradient) {
       dcos = d * (2 / (p * p * c2) - 4) / c;
       break;
     }
-    case AxialFamily::kGgx: {
+    case Family::kGgx: {
       if (c <= 0) break;
       const double den = p * p * c * c + sin2;
       d = p * p / (kPi * den * den);
@@ -87,7 +87,7 @@ double AxialD(const AxialNdf& ndf, const Vec3& wm, AxialGradient* gradient) {
       dcos = d * 4 * c * (1 - p) * (1 + p) / den;
       break;
     }
-    case AxialFamily::kKagiwadaKalaba: {
+    case Family::kKagiwadaKalaba: {
       double slope = 0;
       const double factor = AxialNormalisation(ndf, gradient != nullptr ? &slope : nullptr);
       const double one = (1 - p) + p * below, l = std::atanh(p);  // 1 - b c
@@ -96,7 +96,7 @@ double AxialD(const AxialNdf& ndf, const Vec3& wm, AxialGradient* gradient) {
       dcos = d * p / one;
       break;
     }
-    case AxialFamily::kSphericalGaussian: {
+    case Family::kSphericalGaussian: {
       double slope = 0;
       const double factor = AxialNormalisation(ndf, gradient != nullptr ? &slope : nullptr);
       const double k = 2 / (p * p);
@@ -105,6 +105,8 @@ double AxialD(const AxialNdf& ndf, const Vec3& wm, AxialGradient* gradient) {
       dcos = d * k;
       break;
     }
+    default:
+      break;
   }
   if (gradient != nullptr) *gradient = {dparameter, dcos};
   return d;

@@ -15,15 +15,14 @@
 // sigma is convex in the direction, so sigma(u) >= u sigma(1) = u: G1 <= 1 without a clamp.
 #pragma once
 
+#include "lobefit/core/radial/family.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {
 
-enum class AxialFamily { kBeckmann, kGgx, kKagiwadaKalaba, kSphericalGaussian };
-
-// The parameter is alpha > 0, or b in (0, 1) for Kagiwada-Kalaba (b -> 0 isotropic, b -> 1 a flat surface).
+// Of any family but kProfile and kStudent. The parameter is alpha > 0, or b in (0, 1) for Kagiwada-Kalaba (b -> 0 isotropic, b -> 1 a flat surface).
 struct AxialNdf {
-  AxialFamily family = AxialFamily::kGgx;
+  Family family = Family::kGgx;
   double parameter = 1;
 };
 

@@ -46,7 +46,7 @@ double LambertBelowCoat(double ior, bool refracted, double* dior) {
 }
 
 CoatFactors EvaluateCoat(const Coat& coat, const Vec3& wi, const Vec3& wo) {
-  const SlopeNormalDistribution distribution({SlopeKind::kGgx, coat.alpha, coat.alpha, 0.0, 0.0, 0.0});
+  const SlopeNormalDistribution distribution({Family::kGgx, coat.alpha, coat.alpha, 0.0, 0.0, 0.0});
   double by_shape[kSlopeParameters], cos_d, dF_dior;
   const double specular = MicrofacetSpecular(distribution, {}, wo, wi, by_shape, &cos_d);
   const double F = FresnelDielectric(cos_d, coat.ior, nullptr, &dF_dior);

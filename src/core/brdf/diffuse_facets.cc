@@ -19,7 +19,7 @@ DiffuseFacets::DiffuseFacets(const Lobe& lobe, const SlopeCoordinates& shape)
       a_(std::exp(shape.v[2])),
       c_(std::exp(shape.v[4])) {
   static const QuadratureRule rule = GaussLegendre(kRadii);
-  const bool ggx = FamilyOf(lobe.ndf) == NdfFamily::kGgx;
+  const bool ggx = FamilyOf(lobe.ndf) == Family::kGgx;
   for (int i = 0; i < kRadii; ++i) {
     const double x = 0.5 * (1 + rule.nodes[static_cast<std::size_t>(i)]);
     const double w = 0.5 * rule.weights[static_cast<std::size_t>(i)] / kAngles;

@@ -89,11 +89,9 @@ HWY_INLINE V GgxMaskingG1(const GgxLobeUniform<V>& p, V ux, V uy, V uz, V* gradi
   return value;
 }
 
-enum class GgxMasking { kClamped, kUnclamped, kHeight };
-
 // specular = D G2 / (4 cos_theta_i cos_theta_o) in 1/sr; cos_d = wi . wh. With kGradient also d specular / d(slope
 // coordinates).
-template <bool kGradient, GgxMasking kMasking, class V>
+template <bool kGradient, Masking kMasking, class V>
 HWY_INLINE V GgxSpecular(const GgxLobeUniform<V>& p, V ix, V iy, V iz, V ox, V oy, V oz, V* cos_d, V* gradient) {
   const V hx = ix + ox, hy = iy + oy, hz = iz + oz;
   const V h2 = hx * hx + hy * hy + hz * hz;
@@ -105,7 +103,7 @@ HWY_INLINE V GgxSpecular(const GgxLobeUniform<V>& p, V ix, V iy, V iz, V ox, V o
   const GgxSigma<V> i = EvaluateSigma(p, ix, iy, iz), o = EvaluateSigma(p, ox, oy, oz);
   // X = over / under, X = max(sigma, cos) where clamped.
   V over_i = i.over, under_i = i.under, over_o = o.over, under_o = o.under;
-  if constexpr (kMasking != GgxMasking::kUnclamped) {
+  if constexpr (kMasking != Masking::kSmithUnclamped) {
     const V excess_i = i.over - iz * i.under, excess_o = o.over - oz * o.under;
     over_i = SelectNegative(excess_i, iz, i.over);
     under_i = SelectNegative(excess_i, one, i.under);
@@ -115,7 +113,7 @@ HWY_INLINE V GgxSpecular(const GgxLobeUniform<V>& p, V ix, V iy, V iz, V ox, V o
   // 1 / G2 times the cosines and both `under`. Separable: X_i X_o; height-correlated: X_i o_z + X_o i_z - i_z o_z,
   // written without cancellation.
   V both = over_i * over_o;
-  if constexpr (kMasking == GgxMasking::kHeight) {
+  if constexpr (kMasking == Masking::kSmithHeight) {
     both = over_i * under_o * oz + (over_o - oz * under_o) * under_i * iz;
   }
   // The only division of the value.
@@ -132,12 +130,12 @@ HWY_INLINE V GgxSpecular(const GgxLobeUniform<V>& p, V ix, V iy, V iz, V ox, V o
     gradient[4] = f * p.c * z2 * y2 - one;
     // -d ln both = -(d ln X) times this factor; a clamped X does not move.
     V factor_i = zero - one, factor_o = zero - one;
-    if constexpr (kMasking == GgxMasking::kHeight) {
+    if constexpr (kMasking == Masking::kSmithHeight) {
       const V inverse_both = inverse * k * k;
       factor_i = factor_i * over_i * under_o * oz * inverse_both;
       factor_o = factor_o * over_o * under_i * iz * inverse_both;
     }
-    if constexpr (kMasking != GgxMasking::kUnclamped) {
+    if constexpr (kMasking != Masking::kSmithUnclamped) {
       factor_i = SelectNegative(i.over - iz * i.under, zero, factor_i);
       factor_o = SelectNegative(o.over - oz * o.under, zero, factor_o);
     }

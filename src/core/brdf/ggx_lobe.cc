@@ -42,7 +42,7 @@ GgxLobeUniform<V64> Broadcast(const double* u) {
 }
 
 // What is computed for a vector of samples: inputs and outputs in the order of their arrays.
-template <bool kGradient, GgxMasking kMasking>
+template <bool kGradient, Masking kMasking>
 struct LobeKernel {
   static constexpr std::size_t kInputs = 6, kOutputs = kGradient ? 7 : 2;
   static HWY_INLINE void Evaluate(const GgxLobeUniform<V64>& p, const V64* x, V64* y) {
@@ -102,11 +102,11 @@ template <bool kGradient>
 void LobeLoop(const GgxArrays& arrays, Masking masking) {
   switch (masking) {
     case Masking::kSmithUnclamped:
-      return Loop<LobeKernel<kGradient, GgxMasking::kUnclamped>>(arrays);
+      return Loop<LobeKernel<kGradient, Masking::kSmithUnclamped>>(arrays);
     case Masking::kSmithHeight:
-      return Loop<LobeKernel<kGradient, GgxMasking::kHeight>>(arrays);
+      return Loop<LobeKernel<kGradient, Masking::kSmithHeight>>(arrays);
     default:
-      return Loop<LobeKernel<kGradient, GgxMasking::kClamped>>(arrays);
+      return Loop<LobeKernel<kGradient, Masking::kSmithSeparable>>(arrays);
   }
 }
 
@@ -210,22 +210,23 @@ double GgxG1(const Vec3& u, const SlopeCoordinates& shape, bool clamp, double gr
 
 double GgxLobe(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Masking masking, double* cos_d,
                double gradient[5]) {
-  using scalar::GgxMasking;
   const scalar::GgxLobeUniform<double> p = Uniform(shape);
-  const auto evaluate = [&]<bool kGradient, GgxMasking kMasking>() {
+  const auto evaluate = [&]<bool kGradient, Masking kMasking>() {
     return scalar::GgxSpecular<kGradient, kMasking>(p, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, cos_d, gradient);
   };
   const bool g = gradient != nullptr;
   switch (masking) {
     case Masking::kSmithUnclamped:
-      return g ? evaluate.operator()<true, GgxMasking::kUnclamped>()
-               : evaluate.operator()<false, GgxMasking::kUnclamped>();
+      return g ? evaluate.operator()<true, Masking::kSmithUnclamped>()
+               : evaluate.operator()<false, Masking::kSmithUnclamped>();
     case Masking::kSmithHeight:
-      return g ? evaluate.operator()<true, GgxMasking::kHeight>() : evaluate.operator()<false, GgxMasking::kHeight>();
+      return g ? evaluate.operator()<true, Masking::kSmithHeight>()
+               : evaluate.operator()<false, Masking::kSmithHeight>();
     default:
       break;
   }
-  return g ? evaluate.operator()<true, GgxMasking::kClamped>() : evaluate.operator()<false, GgxMasking::kClamped>();
+  return g ? evaluate.operator()<true, Masking::kSmithSeparable>()
+           : evaluate.operator()<false, Masking::kSmithSeparable>();
 }
 
 }  // namespace lobefit

@@ -15,7 +15,7 @@ namespace lobefit {
 namespace {
 
 bool IsFast(Masking masking) { return masking <= Masking::kSmithHeight; }
-bool IsGgx(const Lobe& lobe) { return FamilyOf(lobe.ndf) == NdfFamily::kGgx; }
+bool IsGgx(const Lobe& lobe) { return FamilyOf(lobe.ndf) == Family::kGgx; }
 
 const std::shared_ptr<const ProfileGrid>& PowerLawGrid() {
   static const auto grid =
@@ -74,7 +74,7 @@ class GeneralLobe {
 // A profile or Student's by its table; Student's is the power law's with its ellipse widened.
 void FastRadialLobe(const DirectionArrays& d, const Lobe& lobe, const LobeShape& shape, double* specular, double* cos_d,
                     double* gradient) {
-  if (FamilyOf(lobe.ndf) == NdfFamily::kProfile)
+  if (FamilyOf(lobe.ndf) == Family::kProfile)
     return RadialLobe(d, shape.slope, *shape.masking, lobe.masking, specular, cos_d, gradient);
   const double rest = shape.gamma - 1.0, scale = std::sqrt(rest);
   const SlopeCoordinates wide = Widened(shape.slope, shape.gamma);
@@ -91,13 +91,13 @@ void FastRadialLobe(const DirectionArrays& d, const Lobe& lobe, const LobeShape&
 
 LobeShape::LobeShape(const Lobe& lobe, const SlopeCoordinates& ellipse, const std::vector<double>& profile)
     : slope(ellipse) {
-  const NdfFamily family = FamilyOf(lobe.ndf);
-  if (family == NdfFamily::kStudent) {
+  const Family family = FamilyOf(lobe.ndf);
+  if (family == Family::kStudent) {
     gamma = profile[0];
     masking = std::make_shared<const ProfileMasking>(
         PowerLawGrid(), Profile(PowerLawGrid()->spline(), std::vector<double>{gamma - 2.0}));
   }
-  if (family == NdfFamily::kProfile)
+  if (family == Family::kProfile)
     masking = std::make_shared<const ProfileMasking>(GridOf(lobe), Profile(GridOf(lobe)->spline(), profile));
 }
 
@@ -110,34 +110,17 @@ LobeShape ShapeAt(const Lobe& lobe, const std::vector<double>* values) {
 }
 
 Shadowing ShadowingOf(Masking masking, const SlopeCoordinates& shape) {
-  switch (masking) {
-    case Masking::kSmithUnclamped:
-      return {ShadowingKind::kSmithSeparable, false};
-    case Masking::kSmithHeight:
-      return {ShadowingKind::kSmithHeight};
-    case Masking::kSmithHeightDirection:
-      return {ShadowingKind::kSmithHeightDirection};
-    case Masking::kVCavity:
-      return {ShadowingKind::kVCavity};
-    case Masking::kImplicit:
-      return {ShadowingKind::kImplicit};
-    case Masking::kSchlickSmith:
-      return {ShadowingKind::kSchlickSmith, true, std::exp(0.5 * (shape.v[2] + shape.v[4]))};
-    case Masking::kKelemen:
-      return {ShadowingKind::kKelemen};
-    case Masking::kSmithSeparable:
-      break;
-  }
-  return {};
+  if (masking != Masking::kSchlickSmith) return {masking};
+  return {masking, std::exp(0.5 * (shape.v[2] + shape.v[4]))};
 }
 
 std::unique_ptr<NormalDistribution> DistributionOf(const Lobe& lobe, const LobeShape& shape,
                                                    std::vector<double>* jacobian) {
-  const NdfFamily family = FamilyOf(lobe.ndf);
+  const Family family = FamilyOf(lobe.ndf);
   const std::size_t size = ShapeParameters(lobe);
   const SlopeCoordinates& s = shape.slope;
   const double a = std::exp(s.v[2]), b = s.v[3], c = std::exp(s.v[4]);
-  const bool on_sphere = family == NdfFamily::kKagiwadaKalaba || family == NdfFamily::kSphericalGaussian;
+  const bool on_sphere = family == Family::kKagiwadaKalaba || family == Family::kSphericalGaussian;
   if (jacobian != nullptr) jacobian->assign((on_sphere ? 1 : size) * size, 0.0);
   if (!on_sphere) {
     const double alpha_y = std::hypot(b, c), r = b / alpha_y;
@@ -152,17 +135,16 @@ std::unique_ptr<NormalDistribution> DistributionOf(const Lobe& lobe, const LobeS
       for (std::size_t k = 0; k < kSlopeParameters; ++k) std::copy(rows[k], rows[k] + 5, jacobian->data() + k * size);
       for (std::size_t k = kSlopeParameters; k < size; ++k) (*jacobian)[k * size + k] = 1;
     }
-    const SlopeKind kind = family == NdfFamily::kBeckmann ? SlopeKind::kBeckmann : SlopeKind::kGgx;
-    const SlopeDistribution slopes = {kind, a, alpha_y, r, s.v[0], s.v[1]};
-    if (family == NdfFamily::kProfile) return std::make_unique<ShapeInvariantDistribution>(shape.masking, slopes);
-    if (family == NdfFamily::kStudent) return std::make_unique<StudentDistribution>(shape.masking, slopes);
+    const SlopeDistribution slopes = {family, a, alpha_y, r, s.v[0], s.v[1]};
+    if (family == Family::kProfile) return std::make_unique<ShapeInvariantDistribution>(shape.masking, slopes);
+    if (family == Family::kStudent) return std::make_unique<StudentDistribution>(shape.masking, slopes);
     return std::make_unique<SlopeNormalDistribution>(slopes);
   }
-  const bool gaussian = family == NdfFamily::kSphericalGaussian;
+  const bool gaussian = family == Family::kSphericalGaussian;
   const double kk = 1 / (1 + 0.5 * a * a);
   if (jacobian != nullptr) (*jacobian)[2] = gaussian ? a : -a * a * kk * kk;
-  return std::make_unique<AxialDistribution>(gaussian ? AxialNdf{AxialFamily::kSphericalGaussian, a}
-                                                      : AxialNdf{AxialFamily::kKagiwadaKalaba, kk});
+  return std::make_unique<AxialDistribution>(gaussian ? AxialNdf{Family::kSphericalGaussian, a}
+                                                      : AxialNdf{Family::kKagiwadaKalaba, kk});
 }
 
 double SpecularLobe(const Vec3& wi, const Vec3& wo, const Lobe& lobe, const LobeShape& shape, double* cos_d,

@@ -23,29 +23,29 @@ constexpr ShapeRow kShapeRows[] = {
 };
 
 struct NdfRow {
-  NdfFamily family;
+  Family family;
   bool round, tilted;
   bool free[kEllipseParameters];
 };
 // In the order of the enum.
 constexpr NdfRow kNdfs[] = {
-    {NdfFamily::kGgx, true, false, {true, false, false, false, false}},
-    {NdfFamily::kGgx, true, true, {true, false, false, true, false}},
-    {NdfFamily::kGgx, false, false, {true, true, false, false, true}},
-    {NdfFamily::kGgx, false, true, {true, true, true, true, true}},
-    {NdfFamily::kBeckmann, true, false, {true, false, false, false, false}},
-    {NdfFamily::kBeckmann, false, false, {true, true, false, false, true}},
-    {NdfFamily::kBeckmann, false, true, {true, true, true, true, true}},
-    {NdfFamily::kKagiwadaKalaba, true, false, {true, false, false, false, false}},
-    {NdfFamily::kSphericalGaussian, true, false, {true, false, false, false, false}},
-    {NdfFamily::kProfile, true, false, {true, false, false, false, false}},
-    {NdfFamily::kProfile, true, true, {true, false, false, true, false}},
-    {NdfFamily::kProfile, false, false, {true, true, false, false, true}},
-    {NdfFamily::kProfile, false, true, {true, true, true, true, true}},
-    {NdfFamily::kStudent, true, false, {true, false, false, false, false}},
-    {NdfFamily::kStudent, true, true, {true, false, false, true, false}},
-    {NdfFamily::kStudent, false, false, {true, true, false, false, true}},
-    {NdfFamily::kStudent, false, true, {true, true, true, true, true}},
+    {Family::kGgx, true, false, {true, false, false, false, false}},
+    {Family::kGgx, true, true, {true, false, false, true, false}},
+    {Family::kGgx, false, false, {true, true, false, false, true}},
+    {Family::kGgx, false, true, {true, true, true, true, true}},
+    {Family::kBeckmann, true, false, {true, false, false, false, false}},
+    {Family::kBeckmann, false, false, {true, true, false, false, true}},
+    {Family::kBeckmann, false, true, {true, true, true, true, true}},
+    {Family::kKagiwadaKalaba, true, false, {true, false, false, false, false}},
+    {Family::kSphericalGaussian, true, false, {true, false, false, false, false}},
+    {Family::kProfile, true, false, {true, false, false, false, false}},
+    {Family::kProfile, true, true, {true, false, false, true, false}},
+    {Family::kProfile, false, false, {true, true, false, false, true}},
+    {Family::kProfile, false, true, {true, true, true, true, true}},
+    {Family::kStudent, true, false, {true, false, false, false, false}},
+    {Family::kStudent, true, true, {true, false, false, true, false}},
+    {Family::kStudent, false, false, {true, true, false, false, true}},
+    {Family::kStudent, false, true, {true, true, true, true, true}},
 };
 const NdfRow& RowOf(Ndf ndf) { return kNdfs[static_cast<std::size_t>(ndf)]; }
 
@@ -60,12 +60,12 @@ struct ProfileRow {
   std::string description;
 };
 std::vector<ProfileRow> ProfileRows(const Lobe& lobe) {
-  const NdfFamily family = FamilyOf(lobe.ndf);
-  if (family == NdfFamily::kStudent) {
+  const Family family = FamilyOf(lobe.ndf);
+  if (family == Family::kStudent) {
     return {{"gamma", 1.55, 100, 2, "exponent of the tail of the slopes: 2 is GGX, large is Beckmann"}};
   }
   std::vector<ProfileRow> rows;
-  if (family != NdfFamily::kProfile) return rows;
+  if (family != Family::kProfile) return rows;
   const std::vector<double>& knots = GridOf(lobe)->spline()->knots();
   const std::size_t size = knots.size() - 1;
   for (std::size_t k = 1; k <= size; ++k) {
@@ -148,11 +148,9 @@ const char* WhyNoCoat(const Model& model) {
   return "";
 }
 
-bool IsSmith(Masking masking) { return masking <= Masking::kSmithHeightDirection; }
-
 }  // namespace
 
-NdfFamily FamilyOf(Ndf ndf) { return RowOf(ndf).family; }
+Family FamilyOf(Ndf ndf) { return RowOf(ndf).family; }
 bool IsRound(Ndf ndf) { return RowOf(ndf).round; }
 bool IsTilted(Ndf ndf) { return RowOf(ndf).tilted; }
 bool IsInPlane(Ndf ndf) { return RowOf(ndf).round && RowOf(ndf).tilted; }
@@ -167,7 +165,7 @@ std::string WhyNotEvaluable(const Model& model) {
       return std::string("direction retro needs a lobe about the normal, ") + NameOf(NdfChoices(), lobe.ndf) +
              " may tilt, and would not be reciprocal; use ndf ggx, ggx-anisotropic or one of the others without a tilt";
     }
-    if (lobe.grid != nullptr && FamilyOf(lobe.ndf) != NdfFamily::kProfile) {
+    if (lobe.grid != nullptr && FamilyOf(lobe.ndf) != Family::kProfile) {
       return std::string("knots go with a profile only, not with ndf ") + NameOf(NdfChoices(), lobe.ndf);
     }
     if (!lobe.metal.empty() && lobe.fresnel != Fresnel::kConductor) {
@@ -177,8 +175,8 @@ std::string WhyNotEvaluable(const Model& model) {
   if (const std::string why = WhyNoCoat(model); !why.empty()) return why;
   if (model.diffuse == Diffuse::kMicrofacet) {
     const Lobe& first = model.lobes.front();
-    const NdfFamily family = FamilyOf(first.ndf);
-    if (family != NdfFamily::kGgx && family != NdfFamily::kBeckmann) {
+    const Family family = FamilyOf(first.ndf);
+    if (family != Family::kGgx && family != Family::kBeckmann) {
       return std::string("diffuse microfacet needs a first lobe of GGX or Beckmann facets, not ") +
              NameOf(NdfChoices(), first.ndf);
     }
@@ -214,9 +212,9 @@ std::size_t FresnelParameters(Fresnel fresnel) {
 
 std::size_t ShapeParameters(const Lobe& lobe) {
   switch (FamilyOf(lobe.ndf)) {
-    case NdfFamily::kStudent:
+    case Family::kStudent:
       return kEllipseParameters + 1;
-    case NdfFamily::kProfile:
+    case Family::kProfile:
       return kEllipseParameters + GridOf(lobe)->spline()->size();
     default:
       return kEllipseParameters;
@@ -245,7 +243,7 @@ std::shared_ptr<const ProfileGrid> GridWithKnots(const std::vector<double>& knot
 
 const std::shared_ptr<const ProfileGrid>& GridOf(const Lobe& lobe) {
   static const std::shared_ptr<const ProfileGrid> none;
-  if (FamilyOf(lobe.ndf) != NdfFamily::kProfile) return none;
+  if (FamilyOf(lobe.ndf) != Family::kProfile) return none;
   if (lobe.grid != nullptr) return lobe.grid;
   static const std::shared_ptr<const ProfileGrid> grid = GridWithKnots({0, 1, 2, 4, 8, 16, 32});
   return grid;
@@ -256,8 +254,8 @@ std::vector<Parameter> Parameters(const Model& model) {
   for (std::size_t l = 0; l < model.lobes.size(); ++l) {
     const Lobe& lobe = model.lobes[l];
     const std::string prefix = l == 0 ? "" : "lobe" + std::to_string(l + 1) + ".";
-    const NdfFamily family = FamilyOf(lobe.ndf);
-    const bool sphere = family == NdfFamily::kKagiwadaKalaba || family == NdfFamily::kSphericalGaussian;
+    const Family family = FamilyOf(lobe.ndf);
+    const bool sphere = family == Family::kKagiwadaKalaba || family == Family::kSphericalGaussian;
     for (std::size_t i = 0; i < kEllipseParameters; ++i) {
       const ShapeRow& row = kShapeRows[i];
       const bool is_angle = std::string_view(row.unit) == "deg";

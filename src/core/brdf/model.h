@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "lobefit/base/choice.h"
+#include "lobefit/core/masking/masking.h"
+#include "lobefit/core/radial/family.h"
 #include "lobefit/core/radial/profile_masking.h"
 
 namespace lobefit {
@@ -37,24 +39,10 @@ enum class Ndf {
   kStudentEllipsoid,
 };
 
-enum class NdfFamily { kGgx, kBeckmann, kKagiwadaKalaba, kSphericalGaussian, kProfile, kStudent };
-NdfFamily FamilyOf(Ndf ndf);
+Family FamilyOf(Ndf ndf);
 bool IsRound(Ndf ndf);    // alpha_y follows alpha_x
 bool IsTilted(Ndf ndf);   // the axis may leave the normal
 bool IsInPlane(Ndf ndf);  // round, and tilted within the plane of the measurement
-
-// Masking and shadowing for both directions, G2.
-enum class Masking {
-  kSmithSeparable,        // G1(wi) G1(wo), each min(1, cos / sigma) [Walter eq 5-6]; the min is a kink for tilted lobes
-  kSmithUnclamped,        // the same without the min: smooth, but energy can be created on one side of a tilted lobe
-  kSmithHeight,           // height-correlated [Heitz eq 99] with 1 + Lambda = max(1, sigma / cos)
-  kSmithHeightDirection,  // height- and direction-correlated [Heitz eq 101]; a kink where both Lambdas are equal
-  kVCavity,               // [Heitz eq 49-50]; lobes about the normal only
-  // For comparison, not derived from a surface:
-  kImplicit,      // cos_theta_i cos_theta_o [Heitz eq 56]
-  kSchlickSmith,  // [Schlick 1994] with m^2 the product of the widths in slope space
-  kKelemen,       // cos_theta_i cos_theta_o / (wi . wh)^2 [Heitz eq 58]
-};
 
 enum class Fresnel {
   kSchlick,     // F = f0 + (1 - f0) (1 - cos_theta_d)^5, f0 a channel

@@ -139,9 +139,9 @@ HWY_INLINE V64 ExcessOf(RadialPiece* piece, std::size_t i, V64 u, V64* g) {
 }
 
 // The operations and their order are those of GgxSpecular, so that a profile of coefficients 0 is GGX to the bit.
-template <bool kGradient, GgxMasking kMasking>
+template <bool kGradient, Masking kMasking>
 void Piece(RadialPiece* piece) {
-  constexpr bool kClamp = kMasking != GgxMasking::kUnclamped;
+  constexpr bool kClamp = kMasking != Masking::kSmithUnclamped;
   const D64 d;
   const GgxLobeUniform<V64> p = UniformOf(*piece);
   const V64 zero = Number(0), one = Number(1);
@@ -156,7 +156,7 @@ void Piece(RadialPiece* piece) {
     const RadialArea in = AreaOf<kClamp>(p, *piece, 0, n, ix, iy, iz),
                      out = AreaOf<kClamp>(p, *piece, 1, n, ox, oy, oz);
     V64 both = in.over * out.over;
-    if constexpr (kMasking == GgxMasking::kHeight)
+    if constexpr (kMasking == Masking::kSmithHeight)
       both = in.over * out.under * oz + (out.over - oz * out.under) * in.under * iz;
     const V64 inverse = one / (k * k * both);
     const V64 ggx = p.quarter_inv_pi_det * (h2 * h2) * (in.under * out.under) * inverse;
@@ -169,7 +169,7 @@ void Piece(RadialPiece* piece) {
       V64 gradient[5] = {slope * z1 * hz, slope * z2 * hz, slope * p.a * z1 * y1 - one, slope * z2 * y1,
                          slope * p.c * z2 * y2 - one};
       V64 factor_i = zero - one, factor_o = zero - one;
-      if constexpr (kMasking == GgxMasking::kHeight) {
+      if constexpr (kMasking == Masking::kSmithHeight) {
         factor_i = (zero - in.over) * out.under * oz / both;
         factor_o = (zero - out.over) * in.under * iz / both;
       }
@@ -183,11 +183,11 @@ void Piece(RadialPiece* piece) {
 void EvaluatePiece(RadialPiece* piece, int masking, bool gradient) {
   switch (static_cast<Masking>(masking)) {
     case Masking::kSmithUnclamped:
-      return gradient ? Piece<true, GgxMasking::kUnclamped>(piece) : Piece<false, GgxMasking::kUnclamped>(piece);
+      return gradient ? Piece<true, Masking::kSmithUnclamped>(piece) : Piece<false, Masking::kSmithUnclamped>(piece);
     case Masking::kSmithHeight:
-      return gradient ? Piece<true, GgxMasking::kHeight>(piece) : Piece<false, GgxMasking::kHeight>(piece);
+      return gradient ? Piece<true, Masking::kSmithHeight>(piece) : Piece<false, Masking::kSmithHeight>(piece);
     default:
-      return gradient ? Piece<true, GgxMasking::kClamped>(piece) : Piece<false, GgxMasking::kClamped>(piece);
+      return gradient ? Piece<true, Masking::kSmithSeparable>(piece) : Piece<false, Masking::kSmithSeparable>(piece);
   }
 }
 

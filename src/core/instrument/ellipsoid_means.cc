@@ -22,7 +22,7 @@ Sums AtPoint(const Ellipsoid& ellipsoid, const ConductorIndex& index, const Vec3
   Sums s;
   s[0] = EllipsoidD(ellipsoid, Normalized(wo + wi), &s[1]);
   double fr[7];
-  s[kEach] = EllipsoidConductorBrdf(ellipsoid, index, wo, wi, G1Kind::kClamped, fr);
+  s[kEach] = EllipsoidConductorBrdf(ellipsoid, index, wo, wi, Masking::kSmithSeparable, fr);
   std::copy(fr, fr + kEllipsoidParameters, &s[kEach + 1]);
   for (std::size_t k = 0; k < kEach; ++k) s[2 * kEach + k] = wi.z * wo.z * s[kEach + k];
   return s;
@@ -77,31 +77,89 @@ LobeCone MakeCone(const Ellipsoid& e, const DirectionPair& pair, double tau) {
   return cone;
 }
 
-// The integral over the disc of `tau` about `moving`, divided by its solid angle; `evaluate` takes the moved direction.
-template <class Evaluate>
-Sums OverDisc(const LobeCone& cone, const Vec3& fixed, double tau, int rings, int azimuths, const Evaluate& evaluate) {
+// A ray of the cone: azimuth about its axis and what it weighs, the sum being 2 pi.
+struct Ray {
+  double psi, weight;
+};
+
+// The argument in [low, high] at which `state` changes from what it is at `low`.
+template <class State>
+double ChangeBetween(double low, double high, const State& state) {
+  const bool first = state(low);
+  for (int step = 0; step < 60 && high - low > 1e-15 * std::fabs(high); ++step) {
+    const double middle = 0.5 * (low + high);
+    (state(middle) == first ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// Equal steps, or where the masking's clamp ends within the disc, whose rim then has two states, Gauss-Legendre panels
+// between the ends: what is summed has a kink there.
+template <class State>
+std::vector<Ray> Rays(int azimuths, const State& at_rim) {
+  constexpr int kLooks = 96, kPanels = 4;
+  std::vector<double> ends;
+  for (int k = 0; k < kLooks; ++k) {
+    const double low = 2 * kPi * k / kLooks, high = 2 * kPi * (k + 1) / kLooks;
+    if (at_rim(low) != at_rim(high)) ends.push_back(ChangeBetween(low, high, at_rim));
+  }
+  std::vector<Ray> rays;
+  if (ends.empty()) {
+    for (int k = 0; k < azimuths; ++k) rays.push_back({2 * kPi * (k + 0.5) / azimuths, 2 * kPi / azimuths});
+    return rays;
+  }
+  const QuadratureRule rule = GaussLegendre(std::max(8, azimuths / 4));
+  ends.push_back(ends.front() + 2 * kPi);
+  for (std::size_t e = 0; e + 1 < ends.size(); ++e) {
+    const double half = 0.5 * (ends[e + 1] - ends[e]) / kPanels;
+    for (int panel = 0; panel < kPanels; ++panel) {
+      for (std::size_t q = 0; q < rule.nodes.size(); ++q)
+        rays.push_back({ends[e] + half * (2 * panel + 1 + rule.nodes[q]), half * rule.weights[q]});
+    }
+  }
+  return rays;
+}
+
+// The integral over the disc of `tau` about `moving`, divided by its solid angle; `evaluate` takes the moved direction,
+// `clamped` says of one whether its masking is.
+template <class Evaluate, class Clamped>
+Sums OverDisc(const LobeCone& cone, const Vec3& fixed, double tau, int rings, int azimuths, const Evaluate& evaluate,
+              const Clamped& clamped) {
   const QuadratureRule rule = GaussLegendre(rings);
   const double inside = -Dot(cone.axis, cone.P * cone.axis);
   const double open[2] = {std::sqrt(Dot(cone.across[0], cone.P * cone.across[0]) / inside),
                           std::sqrt(Dot(cone.across[1], cone.P * cone.across[1]) / inside)};
+  // Equal steps of psi are those on the ellipse that the cone cuts from a plane across its axis.
+  const auto rim = [&](double psi) { return Vec2{open[0] * std::cos(psi), open[1] * std::sin(psi)}; };
+  const auto normal = [&](const Vec2& at, double theta) {
+    const double tangent = std::hypot(at.x, at.y);
+    const Vec3 outward = (at.x / tangent) * cone.across[0] + (at.y / tangent) * cone.across[1];
+    return cone.from_lobe * (std::cos(theta) * cone.axis + std::sin(theta) * outward);
+  };
+  const auto moved = [&](const Vec3& m) {
+    const Vec3 h = Normalized(m);
+    return Normalized(2 * Dot(fixed, h) * h - fixed);
+  };
+  const auto angle_of = [](const Vec2& at) { return std::atan(std::hypot(at.x, at.y)); };
+  const auto state_at = [&](const Vec2& at, double theta) { return clamped(moved(normal(at, theta))); };
   Sums sums = {};
-  for (int k = 0; k < azimuths; ++k) {
-    // Equal steps on the ellipse that the cone cuts from a plane across its axis.
-    const double psi = 2 * kPi * (k + 0.5) / azimuths;
-    const double x = open[0] * std::cos(psi), y = open[1] * std::sin(psi), tangent2 = x * x + y * y;
-    const Vec3 outward = (x / std::sqrt(tangent2)) * cone.across[0] + (y / std::sqrt(tangent2)) * cone.across[1];
-    const double angle = std::atan(std::sqrt(tangent2));
-    const double azimuth_weight = 2 * kPi / azimuths * open[0] * open[1] / tangent2;
-    for (int q = 0; q < rings; ++q) {
-      const std::size_t at = static_cast<std::size_t>(q);
-      const double theta = 0.5 * angle * (1 + rule.nodes[at]);
-      const Vec3 w = std::cos(theta) * cone.axis + std::sin(theta) * outward, m = cone.from_lobe * w;
-      const double length = Norm(m);
-      const Vec3 h = (1 / length) * m;
-      // d h = |A| / |A^T w|^3 dw, d wo = 4 (wi . h) dh.
-      const double weight = azimuth_weight * 0.5 * angle * rule.weights[at] * std::sin(theta) * cone.det /
-                            (length * length * length) * 4 * Dot(fixed, h);
-      Add(weight / (2 * kPi * tau), evaluate(Normalized(2 * Dot(fixed, h) * h - fixed)), &sums);
+  for (const Ray& ray : Rays(azimuths, [&](double psi) { return state_at(rim(psi), angle_of(rim(psi))); })) {
+    const Vec2 at = rim(ray.psi);
+    const double angle = angle_of(at), azimuth_weight = ray.weight * open[0] * open[1] / (at.x * at.x + at.y * at.y);
+    std::vector<double> ends = {0, angle};
+    if (state_at(at, 0) != state_at(at, angle))
+      ends.insert(ends.begin() + 1, ChangeBetween(0, angle, [&](double theta) { return state_at(at, theta); }));
+    for (std::size_t e = 0; e + 1 < ends.size(); ++e) {
+      const double half = 0.5 * (ends[e + 1] - ends[e]);
+      for (std::size_t q = 0; q < rule.nodes.size(); ++q) {
+        const double theta = ends[e] + half * (1 + rule.nodes[q]);
+        const Vec3 m = normal(at, theta);
+        const double length = Norm(m);
+        // d h = |A| / |A^T w|^3 dw, d wo = 4 (wi . h) dh.
+        const double weight = azimuth_weight * half * rule.weights[q] * std::sin(theta) * cone.det /
+                              (length * length * length) * 4 * Dot(fixed, m) / length;
+        Add(weight / (2 * kPi * tau), evaluate(moved(m)), &sums);
+      }
     }
   }
   return sums;
@@ -140,6 +198,15 @@ struct Problem {
   ConductorIndex index;
 };
 
+// Whether G1 of the direction that moves is cut at 1.
+bool IsClamped(const Problem& problem, const Vec3& moved, const Vec3& fixed, bool detector) {
+  if (!(moved.z > 0 && fixed.z > 0)) return false;
+  BrdfFactors factors;
+  EllipsoidConductorBrdf(problem.ellipsoid, problem.index, detector ? moved : fixed, detector ? fixed : moved,
+                         Masking::kSmithSeparable, nullptr, &factors);
+  return detector ? factors.clamped_o : factors.clamped_i;
+}
+
 // One disc, the detector's if `detector`, about a pair.
 Sums OneDisc(const Problem& problem, const DirectionPair& pair, double tau, bool detector, int most_levels,
              double precision) {
@@ -149,8 +216,10 @@ Sums OneDisc(const Problem& problem, const DirectionPair& pair, double tau, bool
   const Vec3& fixed = detector ? pair.wi : pair.wo;
   return Converged(
       [&](int level) {
-        return OverDisc(cone, fixed, tau, 8 << level, 24 << level,
-                        [&](const Vec3& moved) { return detector ? at(moved, fixed) : at(fixed, moved); });
+        return OverDisc(
+            cone, fixed, tau, 8 << level, 24 << level,
+            [&](const Vec3& moved) { return detector ? at(moved, fixed) : at(fixed, moved); },
+            [&](const Vec3& moved) { return IsClamped(problem, moved, fixed, detector); });
       },
       most_levels, precision);
 }

@@ -197,7 +197,7 @@ HWY_INLINE V MeanDistribution(const GgxLobeUniform<V>& p, const GgxMeanRule& rul
 
 // specular: mean of D G2 / (4 cos_i cos_o) as `rule` means it, the mean of D times a D-weighted mean of the rest;
 // argument: mean of what the Fresnel factor is linear in, weighted by that. Both with their gradients.
-template <bool kGradient, GgxMasking kMasking, class V>
+template <bool kGradient, Masking kMasking, class V>
 HWY_INLINE V MeanSpecular(const GgxLobeUniform<V>& p, const GgxMeanRule& rule, const GgxVector<V>& i,
                           const GgxVector<V>& o, V* argument, V* gradient, V* argument_gradient) {
   const V zero = Constant(i.x, 0.0), one = Constant(i.x, 1.0), four = Constant(i.x, 4.0);

@@ -38,7 +38,7 @@ HWY_INLINE bool AnyNegative(V64 x) { return !hn::AllFalse(D64(), hn::Lt(x, hn::Z
 #include "lobefit/core/brdf/ggx_lobe-inl.h"
 #include "lobefit/core/instrument/ggx_mean-inl.h"
 
-template <bool kGradient, GgxMasking kMasking>
+template <bool kGradient, Masking kMasking>
 void Loop(const GgxMeanArrays& arrays) {
   constexpr std::size_t kOut = kGradient ? 12 : 2;
   const D64 d;
@@ -75,11 +75,11 @@ template <bool kGradient>
 void MeanLoop(const GgxMeanArrays& arrays, Masking masking) {
   switch (masking) {
     case Masking::kSmithUnclamped:
-      return Loop<kGradient, GgxMasking::kUnclamped>(arrays);
+      return Loop<kGradient, Masking::kSmithUnclamped>(arrays);
     case Masking::kSmithHeight:
-      return Loop<kGradient, GgxMasking::kHeight>(arrays);
+      return Loop<kGradient, Masking::kSmithHeight>(arrays);
     default:
-      return Loop<kGradient, GgxMasking::kClamped>(arrays);
+      return Loop<kGradient, Masking::kSmithSeparable>(arrays);
   }
 }
 
@@ -157,20 +157,19 @@ void GgxMeanLobe(const DirectionArrays& directions, const SlopeCoordinates& shap
 
 double GgxMeanLobe(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Masking masking,
                    const GgxMeanRule& rule, double* argument, double gradient[5], double argument_gradient[5]) {
-  using scalar::GgxMasking;
   const scalar::GgxLobeUniform<double> p = Uniform(shape);
-  const auto evaluate = [&]<bool kGradient, GgxMasking kMasking>() {
+  const auto evaluate = [&]<bool kGradient, Masking kMasking>() {
     return scalar::MeanSpecular<kGradient, kMasking, double>(p, rule, {wi.x, wi.y, wi.z}, {wo.x, wo.y, wo.z}, argument,
                                                              gradient, argument_gradient);
   };
   const auto with_masking = [&]<bool kGradient>() {
     switch (masking) {
       case Masking::kSmithUnclamped:
-        return evaluate.template operator()<kGradient, GgxMasking::kUnclamped>();
+        return evaluate.template operator()<kGradient, Masking::kSmithUnclamped>();
       case Masking::kSmithHeight:
-        return evaluate.template operator()<kGradient, GgxMasking::kHeight>();
+        return evaluate.template operator()<kGradient, Masking::kSmithHeight>();
       default:
-        return evaluate.template operator()<kGradient, GgxMasking::kClamped>();
+        return evaluate.template operator()<kGradient, Masking::kSmithSeparable>();
     }
   };
   return gradient != nullptr ? with_masking.operator()<true>() : with_masking.operator()<false>();

@@ -41,10 +41,50 @@ void MeanOfMirrored(const DirectionArrays& directions, const Lobe& lobe, const L
   MeanLobe(mirrored, forward, shape, rule, means);
 }
 
+void SetRegion(const Aperture& aperture, LobeMeanRule* rule) {
+  rule->region = nullptr;
+  if (aperture.mean != ApertureMean::kFlux) return;
+  if (aperture.across > 0) {
+    rule->region = std::make_shared<const DirectionRegion>(RectangleRegion(aperture.detector, aperture.across));
+    rule->cut_below = 1;
+    rule->reach = std::sin(std::hypot(aperture.detector, aperture.across));
+  } else if (aperture.source == 0 || aperture.detector == 0) {
+    const double half_angle = std::max(aperture.source, aperture.detector);
+    rule->region = std::make_shared<const DirectionRegion>(DiscRegion(half_angle));
+    rule->cut_below = rule->reach = std::sin(half_angle);
+  }
+  rule->region_of_source = aperture.detector == 0;
+}
+
+// Calls each(i, direction of the region's side, the other one) where the mean is over the rule's region.
+template <class Each>
+void ForRegion(const DirectionArrays& d, const LobeMeanRule& rule, const Each& each) {
+  const double* cosine = rule.region_of_source ? d.wi_z : d.wo_z;
+  for (std::size_t i = 0; rule.region != nullptr && i < d.count; ++i) {
+    if (!(cosine[i] <= rule.cut_below)) continue;
+    const Vec3 wi = {d.wi_x[i], d.wi_y[i], d.wi_z[i]}, wo = {d.wo_x[i], d.wo_y[i], d.wo_z[i]};
+    each(i, rule.region_of_source ? wi : wo, rule.region_of_source ? wo : wi);
+  }
+}
+
+void MeansOverRegion(const DirectionArrays& directions, const Lobe& lobe, const LobeShape& shape,
+                     const LobeMeanRule& rule, const LobeMeans& means) {
+  ForRegion(directions, rule, [&](std::size_t i, const Vec3& spread, const Vec3& point) {
+    double gradient[5], argument_gradient[5];
+    means.specular[i] =
+        GgxRegionMean(point, spread, shape.slope, lobe.masking, *rule.region, rule.argument, &means.argument[i],
+                      means.gradient != nullptr ? gradient : nullptr, argument_gradient);
+    for (std::size_t j = 0; means.gradient != nullptr && j < 5; ++j) {
+      means.gradient[j * directions.count + i] = gradient[j];
+      means.argument_gradient[j * directions.count + i] = argument_gradient[j];
+    }
+  });
+}
+
 }  // namespace
 
 bool HasMeanInClosedForm(const Lobe& lobe) {
-  return FamilyOf(lobe.ndf) == NdfFamily::kGgx && lobe.masking <= Masking::kSmithHeight;
+  return FamilyOf(lobe.ndf) == Family::kGgx && lobe.masking <= Masking::kSmithHeight;
 }
 
 LobeMeanRule MakeLobeMeanRule(const Lobe& lobe, const Aperture& aperture, double alpha, double cos_d) {
@@ -54,9 +94,15 @@ LobeMeanRule MakeLobeMeanRule(const Lobe& lobe, const Aperture& aperture, double
                                                                                       : FresnelArgument::kCosine;
   const double s = DiscTau(aperture.source), d = DiscTau(aperture.detector);
   rule.relative_width = RelativeDiscWidth(std::hypot(aperture.source, aperture.detector), alpha, cos_d);
-  rule.ggx = MakeGgxMeanRule(aperture, DiscNodeCount(aperture, alpha, cos_d), rule.argument);
-  if (rule.closed_form) return rule;
+  rule.nodes = DiscNodeCount(aperture, alpha, cos_d);
+  if (rule.closed_form) return WithDiscs(rule, aperture);
   const bool both = s > 0 && d > 0;
+  if (aperture.across > 0) {
+    throw InputError(fmt::format(
+        "a rectangular detector is averaged over in closed form, which the distribution '{}' with its masking has not: "
+        "fit a GGX distribution with Smith masking, or give the detector as a disc of the same solid angle",
+        NameOf(NdfChoices(), lobe.ndf)));
+  }
   const double widest = RelativeDiscWidth(std::max(aperture.source, aperture.detector), alpha, cos_d);
   if (widest > kMostRelativeWidth) {
     throw InputError(fmt::format(
@@ -68,24 +114,47 @@ LobeMeanRule MakeLobeMeanRule(const Lobe& lobe, const Aperture& aperture, double
   }
   const CubatureSize* size = both ? kTwoDiscs : kOneDisc;
   while (size->relative_width < widest) ++size;
-  const std::vector<DiscPoint> points = size->rings == 0 ? SevenDiscPoints() : DiscRings(size->rings, size->azimuths);
-  const int nodes = both ? std::max(3, DiscNodeCount(aperture, alpha, cos_d)) : 1;
-  for (const DiscNode& node : DiscNodes(aperture, nodes)) {
+  rule.rings = size->rings;
+  rule.azimuths = size->azimuths;
+  if (both) rule.nodes = std::max(3, rule.nodes);
+  return WithDiscs(rule, aperture);
+}
+
+LobeMeanRule WithDiscs(const LobeMeanRule& rule, const Aperture& aperture) {
+  LobeMeanRule moved = rule;
+  moved.ggx = MakeGgxMeanRule(aperture, rule.nodes, rule.argument);
+  moved.points.clear();
+  if (rule.closed_form) {
+    SetRegion(aperture, &moved);
+    return moved;
+  }
+  const std::vector<DiscPoint> points = rule.rings == 0 ? SevenDiscPoints() : DiscRings(rule.rings, rule.azimuths);
+  for (const DiscNode& node : DiscNodes(aperture, rule.nodes)) {
     const double chord = std::sqrt(2 * node.tau);
     for (const DiscPoint& point : points) {
-      GgxMeanRule::Point& to = rule.points.emplace_back();
-      SetDiscMultiples(point, rule.ggx.detector_share * chord, to.o);
-      SetDiscMultiples(point, (1 - rule.ggx.detector_share) * chord, to.i);
+      GgxMeanRule::Point& to = moved.points.emplace_back();
+      SetDiscMultiples(point, moved.ggx.detector_share * chord, to.o);
+      SetDiscMultiples(point, (1 - moved.ggx.detector_share) * chord, to.i);
       to.weight = node.weight * point.weight;
     }
   }
-  return rule;
+  return moved;
+}
+
+void ConstantMeans(const DirectionArrays& directions, const LobeMeanRule& rule, double* factor) {
+  std::fill_n(factor, directions.count, 1.0);
+  ForRegion(directions, rule, [&](std::size_t i, const Vec3& spread, const Vec3&) {
+    if (spread.z <= rule.reach) factor[i] = ConstantMean(spread, *rule.region);
+  });
 }
 
 void MeanLobe(const DirectionArrays& directions, const Lobe& lobe, const LobeShape& shape, const LobeMeanRule& rule,
               const LobeMeans& means) {
   if (lobe.direction == LobeDirection::kRetro) return MeanOfMirrored(directions, lobe, shape, rule, means);
-  if (rule.closed_form) return GgxMeanLobe(directions, shape.slope, lobe.masking, rule.ggx, means);
+  if (rule.closed_form) {
+    GgxMeanLobe(directions, shape.slope, lobe.masking, rule.ggx, means);
+    return MeansOverRegion(directions, lobe, shape, rule, means);
+  }
   const bool derivatives = means.gradient != nullptr;
   const std::size_t size = ShapeParameters(lobe);
   const std::size_t per_sample = rule.points.size(), most = per_sample * kSamplesAtOnce;

@@ -18,8 +18,8 @@ double MisalignedConductorBrdf(const Ellipsoid& ellipsoid, const ConductorIndex&
   BrdfDirectionGradient by_direction;
   const bool derivatives = gradient != nullptr;
   const double f =
-      EllipsoidConductorBrdf(ellipsoid, index, turned_o, turned_i, G1Kind::kClamped, derivatives ? by_shape : nullptr,
-                             factors, derivatives ? &by_direction : nullptr);
+      EllipsoidConductorBrdf(ellipsoid, index, turned_o, turned_i, Masking::kSmithSeparable,
+                             derivatives ? by_shape : nullptr, factors, derivatives ? &by_direction : nullptr);
   const double scale = kind == ValueKind::kBrdf       ? 1.0
                        : kind == ValueKind::kRadiance ? turned_i.z / wi.z
                                                       : turned_o.z / wo.z;

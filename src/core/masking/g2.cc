@@ -4,21 +4,22 @@
 
 namespace lobefit {
 
-double SmithG2(SmithG2Kind kind, double Lambda_o, double Lambda_i, double lambda, SmithG2Gradient* gradient) {
+double SmithG2(Masking masking, double Lambda_o, double Lambda_i, double lambda, SmithG2Gradient* gradient) {
   const double go = 1.0 / (1.0 + Lambda_o), gi = 1.0 / (1.0 + Lambda_i);
   const bool o_is_larger = Lambda_o >= Lambda_i;
   double value = 0.0;
   SmithG2Gradient g{0.0, 0.0, 0.0};
-  switch (kind) {
-    case SmithG2Kind::kSeparable:
+  switch (masking) {
+    case Masking::kSmithSeparable:
+    case Masking::kSmithUnclamped:
       value = 1.0 / ((1.0 + Lambda_o) * (1.0 + Lambda_i));
       g = {-value * go, -value * gi, 0.0};
       break;
-    case SmithG2Kind::kHeight:
+    case Masking::kSmithHeight:
       value = 1.0 / (1.0 + (Lambda_o + Lambda_i));
       g = {-value * value, -value * value, 0.0};
       break;
-    case SmithG2Kind::kDirection: {
+    case Masking::kSmithDirection: {
       const double smaller = o_is_larger ? go : gi;
       const double both = lambda * (go * gi);
       value = both + (1.0 - lambda) * smaller;
@@ -26,13 +27,15 @@ double SmithG2(SmithG2Kind kind, double Lambda_o, double Lambda_i, double lambda
       (o_is_larger ? g.dLambda_o : g.dLambda_i) -= (1.0 - lambda) * smaller * smaller;
       break;
     }
-    case SmithG2Kind::kHeightDirection: {
+    case Masking::kSmithHeightDirection: {
       const double larger = o_is_larger ? Lambda_o : Lambda_i, other = o_is_larger ? Lambda_i : Lambda_o;
       value = 1.0 / (1.0 + larger + lambda * other);
       const double scale = -value * value;
       g = {o_is_larger ? scale : scale * lambda, o_is_larger ? scale * lambda : scale, scale * other};
       break;
     }
+    default:
+      break;
   }
   if (gradient != nullptr) *gradient = g;
   return value;

@@ -7,19 +7,18 @@
 // said otherwise.
 #pragma once
 
+#include "lobefit/core/masking/masking.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {
-
-enum class SmithG2Kind { kSeparable, kHeight, kDirection, kHeightDirection };
 
 struct SmithG2Gradient {
   double dLambda_o, dLambda_i, dlambda;
 };
 
-// G2 of two Lambdas >= 0 (the separable kind: > -1); lambda in [0, 1] is read by the direction-correlated kinds only.
+// G2 of two Lambdas >= 0 (the separable kinds: > -1) under a Smith masking (IsSmith); lambda in [0, 1] is read by the direction-correlated kinds only.
 // kDirection and kHeightDirection have a kink at Lambda_o = Lambda_i; there the larger one is taken to be Lambda_o.
-double SmithG2(SmithG2Kind kind, double Lambda_o, double Lambda_i, double lambda, SmithG2Gradient* gradient = nullptr);
+double SmithG2(Masking masking, double Lambda_o, double Lambda_i, double lambda, SmithG2Gradient* gradient = nullptr);
 
 // Angle in [0, pi] between the azimuths of two directions; 0 if one of them is along the normal.
 double AzimuthDifference(const Vec3& wo, const Vec3& wi);

@@ -16,11 +16,11 @@ struct Masked {
 
 // G1 / cos = 1 / sigma, or 1 / cos where clamped: the quotient that the BRDF needs, without a division by cos that the
 // masking undoes.
-Masked MaskingOverCosine(const EllipsoidFrame& frame, const Vec3& u, G1Kind kind, bool derivatives) {
+Masked MaskingOverCosine(const EllipsoidFrame& frame, const Vec3& u, Masking masking, bool derivatives) {
   Masked g;
   const double sigma = frame.Sigma(u, derivatives ? g.gradient : nullptr, derivatives ? &g.du : nullptr);
   g.clamped = frame.Clamped(u);
-  if (g.clamped && kind == G1Kind::kClamped) {
+  if (g.clamped && masking == Masking::kSmithSeparable) {
     g.value = 1.0 / u.z;
     std::fill(g.gradient, g.gradient + kShape, 0.0);
     g.du = {0.0, 0.0, -g.value * g.value};
@@ -45,7 +45,8 @@ struct Specular {
 
 Vec3 Perpendicular(const Vec3& w, const Vec3& v) { return v - Dot(w, v) * w; }
 
-Specular EvaluateSpecular(const Ellipsoid& ellipsoid, const Vec3& wo, const Vec3& wi, G1Kind kind, bool derivatives) {
+Specular EvaluateSpecular(const Ellipsoid& ellipsoid, const Vec3& wo, const Vec3& wi, Masking masking,
+                          bool derivatives) {
   Specular s;
   const EllipsoidFrame frame(ellipsoid);
   const Vec3 sum = wo + wi;
@@ -55,15 +56,16 @@ Specular EvaluateSpecular(const Ellipsoid& ellipsoid, const Vec3& wo, const Vec3
   double dD[kShape];
   Vec3 dD_dwh;
   const double D = frame.D(s.wh, derivatives ? dD : nullptr, derivatives ? &dD_dwh : nullptr);
-  const Masked o = MaskingOverCosine(frame, wo, kind, derivatives), i = MaskingOverCosine(frame, wi, kind, derivatives);
-  const double masking = o.value * i.value;
-  s.value = 0.25 * D * masking;
+  const Masked o = MaskingOverCosine(frame, wo, masking, derivatives),
+               i = MaskingOverCosine(frame, wi, masking, derivatives);
+  const double G2 = o.value * i.value;
+  s.value = 0.25 * D * G2;
   s.factors = {D, o.value * wo.z, i.value * wi.z, 0.0, o.clamped, i.clamped};
   if (derivatives) {
     for (std::size_t k = 0; k < kShape; ++k) {
-      s.gradient[k] = 0.25 * (dD[k] * masking + D * (o.gradient[k] * i.value + i.gradient[k] * o.value));
+      s.gradient[k] = 0.25 * (dD[k] * G2 + D * (o.gradient[k] * i.value + i.gradient[k] * o.value));
     }
-    const Vec3 through_half = (0.25 * masking / length) * Perpendicular(s.wh, dD_dwh);
+    const Vec3 through_half = (0.25 * G2 / length) * Perpendicular(s.wh, dD_dwh);
     s.direction.wo = through_half + (0.25 * D * i.value) * o.du;
     s.direction.wi = through_half + (0.25 * D * o.value) * i.du;
   }
@@ -97,11 +99,11 @@ double BelowHorizon(int parameters, double* gradient, BrdfFactors* factors, Brdf
 }  // namespace
 
 double EllipsoidConductorBrdf(const Ellipsoid& ellipsoid, const ConductorIndex& index, const Vec3& wo, const Vec3& wi,
-                              G1Kind g1, double* gradient, BrdfFactors* factors,
+                              Masking masking, double* gradient, BrdfFactors* factors,
                               BrdfDirectionGradient* direction_gradient) {
   if (!(wo.z > 0 && wi.z > 0)) return BelowHorizon(7, gradient, factors, direction_gradient);
   const bool derivatives = gradient != nullptr || direction_gradient != nullptr;
-  const Specular s = EvaluateSpecular(ellipsoid, wo, wi, g1, derivatives);
+  const Specular s = EvaluateSpecular(ellipsoid, wo, wi, masking, derivatives);
   ConductorFresnelGradient dF{};
   const double F = FresnelConductor(s.c, index, derivatives ? &dF : nullptr);
   if (gradient != nullptr) {
@@ -111,11 +113,11 @@ double EllipsoidConductorBrdf(const Ellipsoid& ellipsoid, const ConductorIndex& 
   return WithFresnel(s, F, dF.dc, gradient, factors, direction_gradient);
 }
 
-double EllipsoidSchlickBrdf(const Ellipsoid& ellipsoid, double f0, const Vec3& wo, const Vec3& wi, G1Kind g1,
+double EllipsoidSchlickBrdf(const Ellipsoid& ellipsoid, double f0, const Vec3& wo, const Vec3& wi, Masking masking,
                             double* gradient, BrdfFactors* factors, BrdfDirectionGradient* direction_gradient) {
   if (!(wo.z > 0 && wi.z > 0)) return BelowHorizon(6, gradient, factors, direction_gradient);
   const bool derivatives = gradient != nullptr || direction_gradient != nullptr;
-  const Specular s = EvaluateSpecular(ellipsoid, wo, wi, g1, derivatives);
+  const Specular s = EvaluateSpecular(ellipsoid, wo, wi, masking, derivatives);
   double dF_dc, dF_df0;
   const double F = FresnelSchlick(s.c, f0, &dF_dc, &dF_df0);
   if (gradient != nullptr) gradient[5] = s.value * dF_df0;

@@ -1,4 +1,4 @@
-// The microfacet BRDF of the ellipsoid distribution with separable Smith masking, and Lambert's.
+// The microfacet BRDF of the ellipsoid distribution with separable Smith masking (kSmithSeparable or kSmithUnclamped, MATH.md section 5), and Lambert's.
 //
 // [Walter] ellipsoid NDF, eq 4-6:  f_r = F(c) D(wh) G1(wo) G1(wi) / (4 (wo.n) (wi.n)),  c = wo.wh,  in 1/sr.
 // Directions are unit vectors away from the surface, n = +z; at or below the horizon f_r is 0. All functions are
@@ -8,13 +8,10 @@
 
 #include "lobefit/core/ellipsoid/ellipsoid.h"
 #include "lobefit/core/fresnel/fresnel.h"
+#include "lobefit/core/masking/masking.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {
-
-// kClamped: G1 = min(1, cos / sigma) [Walter eq 6, Loubet eq 1], with a kink in the parameters; kUnclamped: smooth, but
-// reflects more than it receives from directions where a tilted lobe hides nothing (MATH.md section 5).
-enum class G1Kind { kClamped, kUnclamped };
 
 struct BrdfFactors {
   double D, G1_o, G1_i, F;
@@ -28,11 +25,11 @@ struct BrdfDirectionGradient {
 
 // Conductor: gradient[7] ends with eta, k.
 double EllipsoidConductorBrdf(const Ellipsoid& ellipsoid, const ConductorIndex& index, const Vec3& wo, const Vec3& wi,
-                              G1Kind g1, double* gradient = nullptr, BrdfFactors* factors = nullptr,
+                              Masking masking, double* gradient = nullptr, BrdfFactors* factors = nullptr,
                               BrdfDirectionGradient* direction_gradient = nullptr);
 
 // Schlick's Fresnel: gradient[6] ends with f0; f_r is linear in (1, f0).
-double EllipsoidSchlickBrdf(const Ellipsoid& ellipsoid, double f0, const Vec3& wo, const Vec3& wi, G1Kind g1,
+double EllipsoidSchlickBrdf(const Ellipsoid& ellipsoid, double f0, const Vec3& wo, const Vec3& wi, Masking masking,
                             double* gradient = nullptr, BrdfFactors* factors = nullptr,
                             BrdfDirectionGradient* direction_gradient = nullptr);
 

@@ -49,7 +49,7 @@ double MaskedIntegral(const NormalDistribution& distribution, const Shadowing& s
 
 double WeakFurnaceSphere(const NormalDistribution& distribution, const Shadowing& shadowing, const Vec3& wo,
                          double* gradient, double tolerance) {
-  if (shadowing.kind <= ShadowingKind::kSmithHeightDirection) {
+  if (IsSmith(shadowing.masking)) {
     bool cut;
     MaskingLambda(distribution, shadowing, wo, nullptr, &cut);
     if (!cut) {

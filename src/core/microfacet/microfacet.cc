@@ -9,30 +9,15 @@ constexpr std::size_t kMax = kMaxDistributionParameters;
 
 // Kinds that do not know the distribution.
 double ShapelessG1(const Shadowing& shadowing, const Vec3& w, const Vec3& wm) {
-  switch (shadowing.kind) {
-    case ShadowingKind::kVCavity:
+  switch (shadowing.masking) {
+    case Masking::kVCavity:
       return VCavityG1(w, wm);
-    case ShadowingKind::kImplicit:
+    case Masking::kImplicit:
       return ImplicitG1(w);
-    case ShadowingKind::kSchlickSmith:
+    case Masking::kSchlickSmith:
       return SchlickSmithG1(w, shadowing.schlick_m);
     default:
       return KelemenG1(w, wm);
-  }
-}
-
-bool IsSmith(ShadowingKind kind) { return kind <= ShadowingKind::kSmithHeightDirection; }
-
-SmithG2Kind ToSmithKind(ShadowingKind kind) {
-  switch (kind) {
-    case ShadowingKind::kSmithHeight:
-      return SmithG2Kind::kHeight;
-    case ShadowingKind::kSmithDirection:
-      return SmithG2Kind::kDirection;
-    case ShadowingKind::kSmithHeightDirection:
-      return SmithG2Kind::kHeightDirection;
-    default:
-      return SmithG2Kind::kSeparable;
   }
 }
 
@@ -41,7 +26,7 @@ SmithG2Kind ToSmithKind(ShadowingKind kind) {
 double MaskingLambda(const NormalDistribution& distribution, const Shadowing& shadowing, const Vec3& w,
                      double* gradient, bool* cut) {
   const double Lambda = distribution.Lambda(w, gradient);
-  const bool negative = Lambda < 0 && (shadowing.clamp || shadowing.kind != ShadowingKind::kSmithSeparable);
+  const bool negative = Lambda < 0 && shadowing.masking != Masking::kSmithUnclamped;
   if (cut != nullptr) *cut = negative;
   if (!negative) return Lambda;
   if (gradient != nullptr) std::fill(gradient, gradient + distribution.parameters(), 0.0);
@@ -51,7 +36,7 @@ double MaskingLambda(const NormalDistribution& distribution, const Shadowing& sh
 double MaskingG1(const NormalDistribution& distribution, const Shadowing& shadowing, const Vec3& w, const Vec3& wm,
                  double* gradient) {
   const int count = distribution.parameters();
-  if (!(Dot(w, wm) > 0) || !IsSmith(shadowing.kind)) {
+  if (!(Dot(w, wm) > 0) || !IsSmith(shadowing.masking)) {
     if (gradient != nullptr) std::fill(gradient, gradient + count, 0.0);
     return Dot(w, wm) > 0 ? ShapelessG1(shadowing, w, wm) : 0.0;
   }
@@ -66,19 +51,19 @@ double MaskingShadowingG2(const NormalDistribution& distribution, const Shadowin
                           const Vec3& wi, const Vec3& wm, double* gradient) {
   const int count = distribution.parameters();
   const bool facing = Dot(wo, wm) > 0 && Dot(wi, wm) > 0;
-  if (!facing || !IsSmith(shadowing.kind)) {
+  if (!facing || !IsSmith(shadowing.masking)) {
     if (gradient != nullptr) std::fill(gradient, gradient + count, 0.0);
     if (!facing) return 0.0;
     const double go = ShapelessG1(shadowing, wo, wm), gi = ShapelessG1(shadowing, wi, wm);
-    return shadowing.kind == ShadowingKind::kVCavity ? std::min(go, gi) : go * gi;
+    return shadowing.masking == Masking::kVCavity ? std::min(go, gi) : go * gi;
   }
   double dLambda_o[kMax], dLambda_i[kMax];
   const bool derivatives = gradient != nullptr;
   const double Lambda_o = MaskingLambda(distribution, shadowing, wo, derivatives ? dLambda_o : nullptr);
   const double Lambda_i = MaskingLambda(distribution, shadowing, wi, derivatives ? dLambda_i : nullptr);
   SmithG2Gradient g;
-  const double value = SmithG2(ToSmithKind(shadowing.kind), Lambda_o, Lambda_i,
-                               VanGinnekenLambda(AzimuthDifference(wo, wi)), derivatives ? &g : nullptr);
+  const double value = SmithG2(shadowing.masking, Lambda_o, Lambda_i, VanGinnekenLambda(AzimuthDifference(wo, wi)),
+                               derivatives ? &g : nullptr);
   if (derivatives) {
     for (int k = 0; k < count; ++k) gradient[k] = g.dLambda_o * dLambda_o[k] + g.dLambda_i * dLambda_i[k];
   }

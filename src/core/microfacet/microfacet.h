@@ -4,30 +4,18 @@
 // from Lambda(u) = sigma(u) / (u.n) - 1, i.e. G1 = (u.n) / sigma(u) [Walter eq 6, Loubet eq 1]: for a centred
 // distribution this is Heitz' Lambda, for one that leans it is the convention of a BRDF that divides by the cosines
 // (MATH.md section 4). Lambda can then be negative, down to -1; it is cut at 0, a kink, which for the separable kind
-// gives exactly [Walter eq 5-6]. The separable kind alone exists without the cut (`clamp` false): in the correlated
-// ones the denominator could vanish.
+// gives exactly [Walter eq 5-6]. The separable kind alone exists without the cut (kSmithUnclamped): in the
+// correlated ones the denominator could vanish.
 #pragma once
 
 #include "lobefit/core/masking/g2.h"
+#include "lobefit/core/masking/masking.h"
 #include "lobefit/core/ndf/normal_distribution.h"
 
 namespace lobefit {
 
-enum class ShadowingKind {
-  kSmithSeparable,        // [Heitz eq 98]
-  kSmithHeight,           // [Heitz eq 99]
-  kSmithDirection,        // [Heitz eq 100, corrected]
-  kSmithHeightDirection,  // [Heitz eq 101]
-  kVCavity,               // [Heitz eq 49-50]; for distributions with D(x, y, z) = D(-x, -y, z)
-  // For comparison only, not derived from a surface:
-  kImplicit,      // [Heitz eq 56]
-  kSchlickSmith,  // [Schlick 1994] with m = schlick_m
-  kKelemen,       // [Heitz eq 58]
-};
-
 struct Shadowing {
-  ShadowingKind kind = ShadowingKind::kSmithSeparable;
-  bool clamp = true;
+  Masking masking = Masking::kSmithSeparable;
   double schlick_m = 0.0;  // read by kSchlickSmith only; constant, no derivative is taken
 };
 

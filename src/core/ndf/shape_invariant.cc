@@ -13,7 +13,7 @@ namespace lobefit {
 ShapeInvariantDistribution::ShapeInvariantDistribution(std::shared_ptr<const ProfileMasking> masking,
                                                        const SlopeDistribution& slopes)
     : masking_(std::move(masking)), slopes_(slopes), outline_(EllipsoidFromOffCenter(OffCenterFromSlopes(slopes))) {
-  slopes_.kind = SlopeKind::kGgx;
+  slopes_.family = Family::kGgx;
 }
 
 int ShapeInvariantDistribution::parameters() const {

@@ -12,7 +12,7 @@
 
 namespace lobefit {
 
-// Parameters alpha_x, alpha_y, r, slope_x, slope_y as in slope_distribution.h (`slopes.kind` is not read), then the
+// Parameters alpha_x, alpha_y, r, slope_x, slope_y as in slope_distribution.h (`slopes.family` is not read), then the
 // profile's coefficients.
 class ShapeInvariantDistribution final : public NormalDistribution {
  public:

@@ -16,7 +16,7 @@ namespace lobefit {
 // The slopes of the power law whose density is Student's: alphas times sqrt(gamma - 1). InputError unless gamma > 3/2.
 SlopeDistribution PowerLawSlopes(double gamma, const SlopeDistribution& slopes);
 
-// D(wm), 1/sr; 0 for wm.z <= 0. Gradient by alpha_x, alpha_y, r, slope_x, slope_y, gamma. `slopes.kind` is not read.
+// D(wm), 1/sr; 0 for wm.z <= 0. Gradient by alpha_x, alpha_y, r, slope_x, slope_y, gamma. `slopes.family` is not read.
 double StudentD(double gamma, const SlopeDistribution& slopes, const Vec3& wm, double* gradient = nullptr);
 
 // Parameters as those of StudentD. `power_law`: of ProfileSpline::PowerLaw(), q_1 = gamma - 2.

@@ -41,16 +41,16 @@ OffCenter OffCenterFromSlopes(const SlopeDistribution& s, double jacobian[25]) {
   return {s.slope_x, s.slope_y, s.alpha_x * s.alpha_x, s.r * s.alpha_x * s.alpha_y, s.alpha_y * s.alpha_y};
 }
 
-SlopeDistribution SlopesFromOffCenter(SlopeKind kind, const OffCenter& o) {
+SlopeDistribution SlopesFromOffCenter(Family family, const OffCenter& o) {
   const double alpha_x = std::sqrt(o.q11), alpha_y = std::sqrt(o.q22);
-  return {kind, alpha_x, alpha_y, o.q12 / (alpha_x * alpha_y), o.slope_x, o.slope_y};
+  return {family, alpha_x, alpha_y, o.q12 / (alpha_x * alpha_y), o.slope_x, o.slope_y};
 }
 
 double SlopeP22(const SlopeDistribution& s, double x, double y, double* gradient) {
   const double X = x - s.slope_x, Y = y - s.slope_y;
   const SlopeQuadratic q = EvaluateSlopeQuadratic(s, X, Y);
   double value = SlopeNormalisation(s), slope;
-  if (s.kind == SlopeKind::kBeckmann) {
+  if (s.family == Family::kBeckmann) {
     value *= std::exp(-q.value);
     slope = -value;
   } else {
@@ -73,7 +73,7 @@ double SlopeDistributionD(const SlopeDistribution& s, const Vec3& wm, double* gr
   const SlopeQuadratic q = EvaluateSlopeQuadratic(s, X, Y);
   const double zz = wm.z * wm.z;
   double value = SlopeNormalisation(s), slope, dz;
-  if (s.kind == SlopeKind::kBeckmann) {
+  if (s.family == Family::kBeckmann) {
     value *= std::exp(-q.value / zz) / (zz * zz);
     slope = -value / zz;
     dz = 2.0 * value * (q.value / zz - 2.0) / wm.z;

@@ -10,24 +10,23 @@
 #pragma once
 
 #include "lobefit/core/ellipsoid/off_center.h"
+#include "lobefit/core/radial/family.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {
-
-enum class SlopeKind { kBeckmann, kGgx };
 
 inline constexpr int kSlopeParameters = 5;
 
 // r = 0 and a zero mean slope give the centred anisotropic distribution, alpha_x = alpha_y besides the isotropic one.
 struct SlopeDistribution {
-  SlopeKind kind = SlopeKind::kGgx;
+  Family family = Family::kGgx;  // or kBeckmann
   double alpha_x = 1.0, alpha_y = 1.0, r = 0.0, slope_x = 0.0, slope_y = 0.0;
 };
 
 // The same ellipse as mean slope and Q^-1, and back; jacobian as in off_center.h, inputs and outputs in each struct's
 // order.
 OffCenter OffCenterFromSlopes(const SlopeDistribution& s, double jacobian[25] = nullptr);
-SlopeDistribution SlopesFromOffCenter(SlopeKind kind, const OffCenter& off_center);
+SlopeDistribution SlopesFromOffCenter(Family family, const OffCenter& off_center);
 
 // The parts of every density that depends on the squared distance from the mean alone. Q = |m~|^2 [eq 95] of an offset
 // (X, Y) from the mean (times any common factor, whose square Q then has), its derivatives in X, Y and r.
@@ -50,7 +49,7 @@ double SlopeDistributionD(const SlopeDistribution& s, const Vec3& wm, double* gr
 
 // Definition of D as printed (eq 64, 70/84, 67/81, 95) for any scalar; p = alpha_x, alpha_y, r, slope_x, slope_y.
 template <class T>
-T SlopeDistributionDFormula(SlopeKind kind, const T* p, const Vec3T<T>& m) {
+T SlopeDistributionDFormula(Family family, const T* p, const Vec3T<T>& m) {
   using std::exp;
   using std::sqrt;
   if (m.z <= 0.0) return T(0.0);
@@ -59,7 +58,7 @@ T SlopeDistributionDFormula(SlopeKind kind, const T* p, const Vec3T<T>& m) {
   const T norm2 = (x * x * p[1] * p[1] + y * y * p[0] * p[0] - T(2.0) * x * y * p[2] * p[0] * p[1]) /
                   (p[0] * p[0] * p[1] * p[1] * one_minus_rr);
   const T scale = T(kInvPi) / (p[0] * p[1] * sqrt(one_minus_rr));
-  const T p22 = kind == SlopeKind::kBeckmann ? scale * exp(-norm2) : scale / ((T(1.0) + norm2) * (T(1.0) + norm2));
+  const T p22 = family == Family::kBeckmann ? scale * exp(-norm2) : scale / ((T(1.0) + norm2) * (T(1.0) + norm2));
   return p22 / (m.z * m.z * m.z * m.z);
 }
 

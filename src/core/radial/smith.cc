@@ -27,9 +27,9 @@ struct Sigma {
   double value, dc, dq;
 };
 
-Sigma SigmaOf(SlopeKind kind, const ProjectedSlopes& p) {
+Sigma SigmaOf(Family family, const ProjectedSlopes& p) {
   const double c = p.c, q = p.q;
-  if (kind == SlopeKind::kGgx) {
+  if (family == Family::kGgx) {
     const double s = std::sqrt(c * c + q);
     const double sum = c >= 0 ? c + s : q / (s - c);
     return {0.5 * sum, 0.5 * sum / s, 0.25 / s};
@@ -67,8 +67,8 @@ ProjectedSlopes ProjectSlopes(const SlopeDistribution& s, const Vec3& u, double*
   return {c, q, c / std::sqrt(q)};
 }
 
-double SmithLambdaOfA(SlopeKind kind, double a, double* dLambda_da) {
-  if (kind == SlopeKind::kGgx) {
+double SmithLambdaOfA(Family family, double a, double* dLambda_da) {
+  if (family == Family::kGgx) {
     const double root = std::sqrt(1.0 + a * a);
     if (dLambda_da != nullptr) *dLambda_da = -0.5 / (a * a * root);
     return a > 0 ? 0.5 / (a * (a + root)) : 0.5 * (root / a - 1.0);
@@ -86,14 +86,14 @@ double SmithLambda(const SlopeDistribution& distribution, const Vec3& u, double*
   const ProjectedSlopes p = ProjectSlopes(distribution, u, derivatives ? dc : nullptr, derivatives ? dq : nullptr);
   // In c and q, not in a: finite at q = 0.
   double value, dvalue_dc, dvalue_dq;
-  if (distribution.kind == SlopeKind::kGgx) {
+  if (distribution.family == Family::kGgx) {
     const double s = std::sqrt(p.c * p.c + p.q);
     value = p.c > 0 ? 0.5 * p.q / (p.c * (p.c + s)) : 0.5 * (s / p.c - 1.0);
     dvalue_dc = -0.5 * p.q / (s * p.c * p.c);
     dvalue_dq = 0.25 / (p.c * s);
   } else {
     double dLambda_da = 0.0;
-    value = SmithLambdaOfA(distribution.kind, p.a, &dLambda_da);
+    value = SmithLambdaOfA(distribution.family, p.a, &dLambda_da);
     dvalue_dc = p.q > 0 ? dLambda_da / std::sqrt(p.q) : 0.0;
     dvalue_dq = p.q > 0 ? -0.5 * dLambda_da * p.a / p.q : 0.0;
   }
@@ -105,7 +105,7 @@ double SmithSigma(const SlopeDistribution& distribution, const Vec3& u, double* 
   double dc[kSlopeParameters], dq[kSlopeParameters];
   const bool derivatives = gradient != nullptr;
   const ProjectedSlopes p = ProjectSlopes(distribution, u, derivatives ? dc : nullptr, derivatives ? dq : nullptr);
-  const Sigma sigma = SigmaOf(distribution.kind, p);
+  const Sigma sigma = SigmaOf(distribution.family, p);
   if (derivatives) Combine(sigma.dc, sigma.dq, dc, dq, gradient);
   if (dsigma_du != nullptr) {
     const double A = distribution.alpha_x * u.x, B = distribution.alpha_y * u.y;
@@ -124,8 +124,8 @@ double CosineLambda(const SlopeDistribution& distribution, const Vec3& u, double
   const ProjectedSlopes p = ProjectSlopes(distribution, u);
   if (!(p.c > 0)) return sigma / u.z - 1.0;
   // sigma - c, then c - u_z.
-  const double rough = distribution.kind == SlopeKind::kGgx ? 0.5 * p.q / (p.c + std::sqrt(p.c * p.c + p.q))
-                                                            : p.c * SmithLambdaOfA(distribution.kind, p.a);
+  const double rough = distribution.family == Family::kGgx ? 0.5 * p.q / (p.c + std::sqrt(p.c * p.c + p.q))
+                                                           : p.c * SmithLambdaOfA(distribution.family, p.a);
   return (rough - (distribution.slope_x * u.x + distribution.slope_y * u.y)) / u.z;
 }
 

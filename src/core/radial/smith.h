@@ -25,7 +25,7 @@ struct ProjectedSlopes {
 ProjectedSlopes ProjectSlopes(const SlopeDistribution& s, const Vec3& u, double* dc = nullptr, double* dq = nullptr);
 
 // Lambda(a) of [Heitz eq 69, 72] for any a != 0, its derivative; +inf gives 0.
-double SmithLambdaOfA(SlopeKind kind, double a, double* dLambda_da = nullptr);
+double SmithLambdaOfA(Family family, double a, double* dLambda_da = nullptr);
 
 double SmithLambda(const SlopeDistribution& distribution, const Vec3& u, double* gradient = nullptr);
 double SmithSigma(const SlopeDistribution& distribution, const Vec3& u, double* gradient = nullptr,
@@ -45,11 +45,11 @@ double SmithG1Clamped(const SlopeDistribution& distribution, const Vec3& u, doub
 // Definition of Lambda as printed, with the sign of a, for any scalar that has erf; the oracle of the tests for
 // moderate |a|.
 template <class T>
-T SmithLambdaFormula(SlopeKind kind, const T& a) {
+T SmithLambdaFormula(Family family, const T& a) {
   using std::erf;
   using std::exp;
   using std::sqrt;
-  if (kind == SlopeKind::kBeckmann) return (erf(a) - T(1.0)) * T(0.5) + exp(-a * a) / (T(2.0 * std::sqrt(kPi)) * a);
+  if (family == Family::kBeckmann) return (erf(a) - T(1.0)) * T(0.5) + exp(-a * a) / (T(2.0 * std::sqrt(kPi)) * a);
   const T root = sqrt(T(1.0) + T(1.0) / (a * a));
   return (a < 0.0 ? -root - T(1.0) : root - T(1.0)) * T(0.5);
 }

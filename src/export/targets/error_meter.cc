@@ -139,7 +139,8 @@ void ErrorMeter::MakeProbes(const BrdfFunction& brdf, const std::vector<SlopeCoo
 void ErrorMeter::MakeAlbedoRules(const std::vector<SlopeCoordinates>& shapes) {
   constexpr int kSide = 24;
   for (const double theta : {0.0, 30.0, 60.0, 75.0, 88.0}) {
-    for (const double phi : {20.0, 110.0, 200.0, 290.0}) {
+    // Five axes of an anisotropic lobe, and all round a tilted one.
+    for (const double phi : {20.0, 92.0, 164.0, 236.0, 308.0}) {
       AlbedoRule rule;
       rule.wo = FromSpherical(DegreesToRadians(theta), DegreesToRadians(phi));
       const auto add = [&](const Vec3& wi) {

@@ -39,7 +39,7 @@ class ErrorMeter {
  public:
   // Pairs of directions to 88 degrees from the normal: 6000 uniform over both hemispheres, and for each lobe 2000 with
   // the light uniform and the half vector by the lobe's normals. Albedos, over all lights as renderers sample them, of
-  // viewers at 0, 30, 60, 75 and 88 degrees and four azimuths.
+  // viewers at 0, 30, 60, 75 and 88 degrees and five azimuths.
   explicit ErrorMeter(const FittedBrdf& fit);
   // The same of any function, with lobes of slopes `shapes`; `source` is its measurement's file.
   ErrorMeter(const BrdfFunction& brdf, const Channels& channels, const std::vector<SlopeCoordinates>& shapes,

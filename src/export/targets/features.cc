@@ -130,7 +130,7 @@ Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes, b
     if (lobe.retro || (fit.lobes().size() > most_lobes && l != StrongestLobe(fit))) continue;
     const bool tilted = lobe.tilt > 1e-6;
     const Ndf ndf = tilted ? Ndf::kEllipsoid : lobe.anisotropic ? Ndf::kGgxAnisotropic : Ndf::kGgx;
-    const bool kept = FamilyOf(lobe.choices.ndf) == NdfFamily::kGgx && tilted == IsTilted(lobe.choices.ndf) &&
+    const bool kept = FamilyOf(lobe.choices.ndf) == Family::kGgx && tilted == IsTilted(lobe.choices.ndf) &&
                       lobe.anisotropic != IsRound(lobe.choices.ndf);
     const Fresnel fresnel = lobe.choices.fresnel;
     const bool tinted =
@@ -154,8 +154,8 @@ std::string RefuseNoLobe(const FittedBrdf& fit) {
 
 std::string RefuseUnknownTerms(const FittedBrdf& fit) {
   for (const FittedLobe& lobe : fit.lobes()) {
-    const NdfFamily family = FamilyOf(lobe.choices.ndf);
-    if (family != NdfFamily::kKagiwadaKalaba && family != NdfFamily::kSphericalGaussian) continue;
+    const Family family = FamilyOf(lobe.choices.ndf);
+    if (family != Family::kKagiwadaKalaba && family != Family::kSphericalGaussian) continue;
     return fmt::format("its shader text knows distributions of slopes, not '{}'",
                        NameOf(NdfChoices(), lobe.choices.ndf));
   }

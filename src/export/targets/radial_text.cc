@@ -99,7 +99,7 @@ PiecewisePolynomial ProfileExcess(const Profile& profile) {
 MaskingRatio MaskingRatioOf(const Lobe& lobe, const LobeShape& shape) {
   const ProfileMasking& masking = *shape.masking;
   // Student's M(a) is scale M(a / scale) of the power law.
-  const double scale = FamilyOf(lobe.ndf) == NdfFamily::kStudent ? std::sqrt(shape.gamma - 1) : 1;
+  const double scale = FamilyOf(lobe.ndf) == Family::kStudent ? std::sqrt(shape.gamma - 1) : 1;
   std::vector<double> row(masking.stride());
   const auto ratio = [&](double w) {
     const double a = std::sinh(w) / scale;
@@ -123,13 +123,13 @@ MaskingRatio MaskingRatioOf(const Lobe& lobe, const LobeShape& shape) {
 }
 
 bool IsRadial(const Lobe& lobe) {
-  const NdfFamily family = FamilyOf(lobe.ndf);
-  return family == NdfFamily::kProfile || family == NdfFamily::kStudent;
+  const Family family = FamilyOf(lobe.ndf);
+  return family == Family::kProfile || family == Family::kStudent;
 }
 
 std::string RadialFunctions(const std::string& prefix, const Lobe& lobe, const LobeShape& shape) {
   std::string text;
-  if (FamilyOf(lobe.ndf) == NdfFamily::kStudent) {
+  if (FamilyOf(lobe.ndf) == Family::kStudent) {
     text = fmt::format("float {}excess(float u) {{ return 2.0 * u - {} * log(1.0 + (exp(u) - 1.0) / {}); }}\n", prefix,
                        FloatLiteral(shape.gamma), FloatLiteral(shape.gamma - 1));
   } else {

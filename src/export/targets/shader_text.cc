@@ -99,7 +99,31 @@ std::string SpectrumBody(const FittedBrdf& fit, const std::string& prefix) {
   return text;
 }
 
-int FamilyNumber(const Lobe& lobe) { return FamilyOf(lobe.ndf) == NdfFamily::kBeckmann ? 1 : 0; }
+int FamilyNumber(const Lobe& lobe) { return FamilyOf(lobe.ndf) == Family::kBeckmann ? 1 : 0; }
+
+// Of lobe.glsl.inc.
+int MaskingNumber(Masking masking) {
+  switch (masking) {
+    case Masking::kSmithDirection:  // no lobe of a material has it
+    case Masking::kSmithSeparable:
+      return 0;
+    case Masking::kSmithUnclamped:
+      return 1;
+    case Masking::kSmithHeight:
+      return 2;
+    case Masking::kSmithHeightDirection:
+      return 3;
+    case Masking::kVCavity:
+      return 4;
+    case Masking::kImplicit:
+      return 5;
+    case Masking::kSchlickSmith:
+      return 6;
+    case Masking::kKelemen:
+      return 7;
+  }
+  return 0;
+}
 
 bool IsRetro(const Lobe& lobe) { return lobe.direction == LobeDirection::kRetro; }
 
@@ -139,7 +163,7 @@ std::string ShaderFunctions(const FittedBrdf& fit, const std::string& prefix) {
                 "  return lobefit_lobe(wi, wo, h, sx, sy, a, b, c, 0, {1}, {0}excess(lobefit_u(h, sx, sy, a, b, c)),\n"
                 "                      {0}ratio(lobefit_w(wi, sx, sy, a, b, c)), {0}ratio(lobefit_w(wo, sx, sy, a, b, "
                 "c)));\n}}\n",
-                own, static_cast<int>(lobe.masking));
+                own, MaskingNumber(lobe.masking));
   }
   return text;
 }
@@ -149,7 +173,7 @@ std::string ShaderLobe(const FittedBrdf& fit, std::size_t lobe, const std::strin
   const char* directions = NamesOf(fit, lobe).directions;
   if (IsRadial(choices)) return fmt::format("{}value({}, {})", LobePrefix(prefix, lobe), directions, slopes);
   return fmt::format("lobefit_lobe({}, {}, {}, {}, 0.0, 1.0, 1.0)", directions, slopes, FamilyNumber(choices),
-                     static_cast<int>(choices.masking));
+                     MaskingNumber(choices.masking));
 }
 
 std::string ShaderFresnel(const FittedBrdf& fit, std::size_t lobe, const std::vector<std::string>& parameters) {
@@ -234,9 +258,9 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-WrittenFiles WriteShader(const FittedBrdf& fit, const std::filesystem::path& path, const std::string& text) {
+WrittenFiles WriteShader(const std::filesystem::path& path, const std::string& text) {
   WriteFileAtomically(path, text);
-  return {{path}, fit.function(), true, {"the error is not measured: the text is the model, in single precision"}};
+  return {{path}, nullptr, true, {"the text is the model, in single precision; that alone is not measured"}};
 }
 
 }  // namespace lobefit

@@ -38,6 +38,6 @@ std::string ShaderSetup(const FittedBrdf& fit, const std::string& coat_ior);
 std::string Replaced(std::string text, const std::string& from, const std::string& to);
 
 // The files of a text that is the model itself.
-WrittenFiles WriteShader(const FittedBrdf& fit, const std::filesystem::path& path, const std::string& text);
+WrittenFiles WriteShader(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace lobefit

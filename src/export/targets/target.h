@@ -52,7 +52,7 @@ struct WriteContext {
 
 struct WrittenFiles {
   std::vector<std::filesystem::path> files;
-  // The target's f_r in the fit's channels, from the written file where it can be read back.
+  // The target's f_r in the fit's channels, from the written file where it can be read back; null: not measured.
   BrdfFunction brdf;
   bool exact = false;              // the file evaluates the model itself
   std::vector<std::string> notes;  // for people: what to do beside loading the file

@@ -12,11 +12,13 @@ namespace {
 
 constexpr double kMostNegative = 0.001, kMostNearFloor = 0.05, kMostErrors = 0.5, kLeastRelative = 0.02;
 
-double DeviationAt(const NoiseModel& noise, double v) { return std::hypot(noise.floor, noise.relative * v); }
+double DeviationAt(const NoiseModel& noise, double v) { return std::sqrt(noise.VarianceAt(v)); }
+
+bool IsNearFloor(const NoiseModel& noise, double v) { return v < 3 * std::sqrt(noise.DarkVarianceAt(v)); }
 
 constexpr const char* kBiasPhrase = " is biased by the noise of these values (";
 
-// J^T W (T'' s^2 / 2), in the columns of `shift` with the floor's s and with that of all noise, and J^T W J of the
+// J^T W (T'' s^2 / 2), in the columns of `shift` with the s of floor and counts and with that of all noise, and J^T W J of the
 // samples.
 void AddShift(const Problem& problem, const Layout& layout, const KernelModel& kernel, const Samples& samples,
               const NoiseModel& noise, const std::vector<std::vector<double>>& f_r, ArrowMatrix* hessian,
@@ -43,7 +45,8 @@ void AddShift(const Problem& problem, const Layout& layout, const KernelModel& k
       Eigen::MatrixXd moved(rows, 2);
       for (std::size_t i = 0; i < count; ++i) {
         const double half = std::sqrt(problem.Weight(begin + i)) * 0.5 * curvature[i];
-        moved(static_cast<Eigen::Index>(i), 0) = half * noise.floor * noise.floor;
+        moved(static_cast<Eigen::Index>(i), 0) =
+            half * noise.DarkVarianceAt(f_r[c][begin + i] * samples.wi_z[begin + i]);
         moved(static_cast<Eigen::Index>(i), 1) = half * deviation[i] * deviation[i];
       }
       const Eigen::MatrixXd gram = j.transpose() * j, pull = j.transpose() * moved;
@@ -86,9 +89,13 @@ NoiseBias::Largest LargestOf(const Layout& layout, const Eigen::MatrixXd& jacobi
 
 std::string NoiseInWords(const NoiseModel& noise) {
   // Noise of the value that hides below the floor is not determined.
-  if (noise.relative < kLeastRelative)
-    return fmt::format("noise floor {:.2g}/sr, noise below {:g} % of the value", noise.floor, 100 * kLeastRelative);
-  return fmt::format("noise floor {:.2g}/sr, noise {:.2g} % of the value", noise.floor, 100 * noise.relative);
+  const std::string counts =
+      noise.poisson > 0 ? fmt::format(", counting noise of {:.2g}/sr a count", noise.poisson) : std::string();
+  if (noise.relative < kLeastRelative) {
+    return fmt::format("noise floor {:.2g}/sr{}, noise below {:g} % of the value", noise.floor, counts,
+                       100 * kLeastRelative);
+  }
+  return fmt::format("noise floor {:.2g}/sr{}, noise {:.2g} % of the value", noise.floor, counts, 100 * noise.relative);
 }
 
 std::string BiasInWords(const NoiseBias::Largest& bias, const char* metric) {
@@ -118,7 +125,7 @@ std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vecto
     negative += static_cast<std::size_t>(
         std::count_if(all.values[c].begin(), all.values[c].end(), [](double f) { return f < 0; }));
     for (std::size_t i = 0; i < samples.size(); ++i)
-      near_floor += f_r[c][i] * samples.wi_z[i] < 3 * noise->floor ? 1 : 0;
+      near_floor += IsNearFloor(*noise, f_r[c][i] * samples.wi_z[i]) ? 1 : 0;
   }
   const auto channels = static_cast<double>(f_r.size());
   bias.negative = static_cast<double>(negative) / (channels * static_cast<double>(all.size()));
@@ -156,17 +163,19 @@ void AddBias(const NoiseBias& bias, const Layout& layout, const std::vector<doub
 }
 
 bool WantsAsinh(const NoiseBias& bias) {
-  return bias.noise.floor > 0 &&
+  return (bias.noise.floor > 0 || bias.noise.poisson > 0) &&
          (bias.negative > kMostNegative || bias.near_floor > kMostNearFloor || bias.of_floor.errors > kMostErrors);
 }
 
 NoiseModel NoiseForAsinh(const NoiseModel& estimated) {
-  return {estimated.floor, std::max(estimated.relative, kLeastRelative)};
+  // With counting noise the share of the value does not set the knee (TransformOf).
+  const double least = estimated.poisson > 0 ? 0.05 * kLeastRelative : kLeastRelative;
+  return {estimated.floor, std::max(estimated.relative, least), estimated.poisson};
 }
 
 bool IsNear(const NoiseModel& a, const NoiseModel& b) {
-  const auto near = [](double x, double y) { return std::fabs(x - y) < 0.1 * std::max(x, y); };
-  return near(a.floor, b.floor) && near(a.relative, b.relative);
+  const auto near = [](double x, double y) { return std::fabs(x - y) <= 0.1 * std::max(x, y); };
+  return near(a.floor, b.floor) && near(a.relative, b.relative) && near(a.poisson, b.poisson);
 }
 
 std::string ToSwitchRemark(const NoiseBias& bias, Metric before) {
@@ -181,7 +190,8 @@ std::string ToSwitchRemark(const NoiseBias& bias, Metric before) {
   }
   const char* name = RowOf(before).name;
   return fmt::format("{} ({}): fitted with metric asinh, knee {:.2g}/sr; {}. --metric {} keeps it", why,
-                     NoiseInWords(bias.noise), used.floor / used.relative, BiasInWords(bias.of_floor, name), name);
+                     NoiseInWords(bias.noise), TransformOf(Metric::kAsinh, used).knee, BiasInWords(bias.of_floor, name),
+                     name);
 }
 
 std::string ToBiasRemark(const NoiseBias& bias, Metric metric) {

@@ -17,13 +17,13 @@ namespace lobefit {
 struct NoiseBias {
   NoiseModel noise;
   double negative = 0;    // share of the readings below 0
-  double near_floor = 0;  // share of the model's values below 3 floors
+  double near_floor = 0;  // share of the model's values below 3 standard deviations of floor and counts
   // Largest predicted bias of a reported parameter, in its standard errors, and which one it is.
   struct Largest {
     double errors = 0;
     std::string parameter;
   };
-  Largest of_floor;       // by the floor alone
+  Largest of_floor;       // by the floor and counting noise alone
   Largest of_all;         // by all noise
   Eigen::VectorXd moved;  // how far all noise moves the solver's coordinates
 };
@@ -42,8 +42,8 @@ std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vecto
 void AddBias(const NoiseBias& bias, const Layout& layout, const std::vector<double>& u, Uncertainty* uncertainty);
 
 // Whether Metric::kAsinh should take the place of an automatic metric: more than 0.1 % of the readings are negative,
-// more than 5 % of the model's values lie below 3 floors, or the floor biases a parameter by more than half of its
-// standard error.
+// more than 5 % of the model's values lie below 3 standard deviations of floor and counts, or these bias a parameter by
+// more than half of its standard error.
 bool WantsAsinh(const NoiseBias& bias);
 
 // The noise with which kAsinh is fitted: at least 2 % of the value, for a smaller knee would give the highlight to the

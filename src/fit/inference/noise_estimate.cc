@@ -14,7 +14,7 @@ constexpr std::size_t kNeighbours = 6, kMostSamples = 4000, kMostOfIncidence = 3
                       kMostPredicted = 40000;
 
 struct PseudoResidual {
-  double level, size;  // x_j and |e_j|
+  double level, mean, size;  // x_j, its counterpart of first order in the values, and |e_j|
 };
 
 // Weights of the linear prediction at `at` from its neighbours; they sum to 1. Directions on a line determine no slope
@@ -66,22 +66,24 @@ void AddIncidence(const Samples& samples, const std::vector<std::uint32_t>& memb
     const std::array<double, kNeighbours> a = PredictionWeights(samples.wo(at), directions);
     for (std::size_t c = 0; c < f_r.size(); ++c) {
       const auto residual = [&](std::uint32_t i) { return (samples.values[c][i] - f_r[c][i]) * samples.wi_z[i]; };
-      double e = residual(at), squares = 1, level = f_r[c][at] * samples.wi_z[at];
-      level *= level;
+      const double value = f_r[c][at] * samples.wi_z[at];
+      double e = residual(at), squares = 1, level = value * value, mean = std::fabs(value);
       for (std::size_t k = 0; k < kNeighbours; ++k) {
         const std::uint32_t i = near[k].second;
         const double v = f_r[c][i] * samples.wi_z[i];
         e -= a[k] * residual(i);
         squares += a[k] * a[k];
         level += a[k] * a[k] * v * v;
+        mean += a[k] * a[k] * std::fabs(v);
       }
-      pairs->push_back({std::sqrt(level / squares), std::fabs(e) / std::sqrt(squares)});
+      pairs->push_back({std::sqrt(level / squares), mean / squares, std::fabs(e) / std::sqrt(squares)});
     }
   }
 }
 
 struct Bin {
-  double level, deviation;
+  double level, mean, deviation;
+  double precision;  // of the deviation's logarithm, 1 / variance
 };
 
 std::vector<Bin> Bins(std::vector<PseudoResidual> pairs) {
@@ -93,23 +95,70 @@ std::vector<Bin> Bins(std::vector<PseudoResidual> pairs) {
   for (std::size_t b = 0; b < count; ++b) {
     const std::size_t begin = b * pairs.size() / count, end = (b + 1) * pairs.size() / count;
     std::vector<double> sizes;
-    double square = 0;
+    const auto members = static_cast<double>(end - begin);
+    double square = 0, mean = 0;
     for (std::size_t i = begin; i < end; ++i) {
       sizes.push_back(pairs[i].size);
-      square += pairs[i].level * pairs[i].level / static_cast<double>(end - begin);
+      square += pairs[i].level * pairs[i].level / members;
+      mean += pairs[i].mean / members;
     }
-    bins.push_back({std::sqrt(square), RobustDeviation(&sizes)});
+    // The median of absolute values is 37 % efficient [Hampel 1974].
+    bins.push_back({std::sqrt(square), mean, RobustDeviation(&sizes), 2 * 0.37 * members});
   }
   return bins;
 }
 
-double MisfitOf(const std::vector<Bin>& bins, double ln_floor, double ln_relative) {
-  double sum = 0;
+// Sums over the bins: of Huber's loss of what a noise model leaves, and of its square in units of its variance.
+struct BinMisfit {
+  double loss = 0, chi_squared = 0;
+};
+BinMisfit MisfitOf(const std::vector<Bin>& bins, const NoiseModel& noise) {
+  BinMisfit misfit;
   for (const Bin& bin : bins) {
-    const double gap = std::log(bin.deviation / std::hypot(std::exp(ln_floor), std::exp(ln_relative) * bin.level));
-    sum += EvaluateLoss(Loss::kHuber, 0.3, gap * gap).rho;
+    const double variance =
+        noise.floor * noise.floor + noise.poisson * bin.mean + noise.relative * noise.relative * bin.level * bin.level;
+    const double gap = std::log(bin.deviation) - 0.5 * std::log(variance);
+    const double rho = EvaluateLoss(Loss::kHuber, 0.3, gap * gap).rho;
+    misfit.loss += rho;
+    misfit.chi_squared += bin.precision * rho;
   }
-  return sum;
+  return misfit;
+}
+
+// Pattern search in the logarithms of the terms that are not 0.
+NoiseModel Descend(const std::vector<Bin>& bins, NoiseModel at) {
+  double best = MisfitOf(bins, at).loss;
+  for (double step = 0.5; step > 1e-3;) {
+    bool moved = false;
+    for (double NoiseModel::*term : {&NoiseModel::floor, &NoiseModel::relative, &NoiseModel::poisson}) {
+      for (const double sign : {1.0, -1.0}) {
+        NoiseModel tried = at;
+        tried.*term *= std::exp(sign * step);
+        const double misfit = MisfitOf(bins, tried).loss;
+        if (!(misfit < best)) continue;
+        best = misfit;
+        at = tried;
+        moved = true;
+      }
+    }
+    if (!moved) step /= 2;
+  }
+  return at;
+}
+
+// With a term of counting noise, where the bins ask for one.
+NoiseModel WithPoisson(const std::vector<Bin>& bins, const NoiseModel& without) {
+  // Three standard deviations, and no small part of what is left: smooth misfit looks like a little of every term.
+  constexpr double kLeastGain = 9, kMostLeft = 0.5;
+  // From where neither floor nor share of the value is all of the noise.
+  NoiseModel start = without;
+  const Bin& middle = bins[bins.size() / 2];
+  start.poisson = middle.deviation * middle.deviation / std::max(middle.mean, 1e-300);
+  start.floor *= 0.5;
+  start.relative *= 0.5;
+  const NoiseModel with = Descend(bins, start);
+  const double before = MisfitOf(bins, without).chi_squared, after = MisfitOf(bins, with).chi_squared;
+  return before - after > kLeastGain && after < kMostLeft * before ? with : without;
 }
 
 }  // namespace
@@ -133,25 +182,9 @@ std::optional<NoiseModel> EstimateNoise(const Samples& samples, const Incidences
   const double rounding = 1e-9 * highest;
   std::erase_if(bins, [&](const Bin& bin) { return !(bin.deviation > rounding); });
   if (bins.size() < 3) return std::nullopt;
-  // Pattern search in the logarithms from the ends: the floor from the darkest bin, the relative noise from the
-  // brightest.
-  double at[2] = {std::log(bins.front().deviation),
-                  std::log(bins.back().deviation / std::max(bins.back().level, rounding))};
-  double best = MisfitOf(bins, at[0], at[1]);
-  for (double step = 0.5; step > 1e-3;) {
-    bool moved = false;
-    for (const auto& [k, sign] : {std::pair{0, 1}, {0, -1}, {1, 1}, {1, -1}}) {
-      double tried[2] = {at[0], at[1]};
-      tried[k] += sign * step;
-      const double misfit = MisfitOf(bins, tried[0], tried[1]);
-      if (!(misfit < best)) continue;
-      best = misfit;
-      at[k] = tried[k];
-      moved = true;
-    }
-    if (!moved) step /= 2;
-  }
-  return NoiseModel{std::exp(at[0]), std::exp(at[1])};
+  // From the ends: the floor from the darkest bin, the relative noise from the brightest.
+  const NoiseModel start = {bins.front().deviation, bins.back().deviation / std::max(bins.back().level, rounding)};
+  return WithPoisson(bins, Descend(bins, start));
 }
 
 NoiseSubset SubsetForNoise(const Samples& samples, const Incidences& incidences) {

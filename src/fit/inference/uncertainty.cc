@@ -63,11 +63,12 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
   const bool scatter_estimated = problem.gains() != nullptr && !layout.recipe().instrument.drift->sd;
   for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
     result.freedom.push_back(result.has_clusters ? filling.freedom(row) : kNan);
+    result.independent_freedom.push_back(INFINITY);
     const double variance = entries.row(row) * filling.samples * entries.row(row).transpose();
     if (!scatter_estimated || !(variance > 0)) continue;
     const double of_gains = entries.row(row) * bread.prior_of_gains * entries.row(row).transpose();
-    result.freedom.back() =
-        FreedomUnderDrift(result.freedom.back(), *problem.gains(), std::min(1.0, of_gains / variance));
+    for (double* freedom : {&result.freedom.back(), &result.independent_freedom.back()})
+      *freedom = FreedomUnderDrift(*freedom, *problem.gains(), std::min(1.0, of_gains / variance));
   }
   return result;
 }

@@ -19,9 +19,11 @@ namespace lobefit {
 // Rows and columns are NaN for an entry that has a part in an undetermined direction, or that is not differentiable
 // (the angles of equal alphas); 0 for what is fixed or held at a bound.
 struct Uncertainty {
-  // Samples taken as independent, of noise that may differ from sample to sample. Errors are normal: 95 % within 1.96
-  // standard errors.
+  // Samples taken as independent, of noise that may differ from sample to sample. 95 % within the quantile of Student's
+  // t with `independent_freedom` degrees of freedom: infinite, so that errors are normal, unless a variance comes from
+  // the scatter of a few gains, which was estimated.
   Eigen::MatrixXd covariance;
+  std::vector<double> independent_freedom;  // [entry]
   // Samples of one incident direction may depend on each other. 95 % within the quantile of Student's t with `freedom`
   // degrees of freedom. Zero with fewer than two incidences.
   Eigen::MatrixXd clustered;

@@ -34,7 +34,7 @@ Verdict JudgeFit(const Problem& problem, const Layout& layout, const std::vector
   const KernelModel kernel = layout.ToKernel(u.data());
   std::optional<NoiseModel> noise = NoiseOf(layout, kernel, samples, incidences);
   if (noise && !(noise->relative <= kNotNoise)) noise.reset();
-  const double floor = noise ? noise->floor : 0;
+  const NoiseModel dark = noise.value_or(NoiseModel{});
   const std::size_t step = std::max<std::size_t>(1, samples.size() / kRun / kMostRuns) * kRun;
   const std::size_t runs = (samples.size() + step - 1) / step;
   std::vector<std::vector<double>> errors(runs), deviations(runs);
@@ -45,9 +45,9 @@ Verdict JudgeFit(const Problem& problem, const Layout& layout, const std::vector
     for (std::size_t c = 0; c < predicted.size(); ++c) {
       for (std::size_t i = begin; i < end; ++i) {
         const double m = samples.values[c][i], f = predicted[c][i - begin], v = m * samples.wi_z[i];
-        if (!(v > kFloors * floor)) continue;
+        if (!(v > kFloors * std::sqrt(dark.DarkVarianceAt(v)))) continue;
         errors[r].push_back(f > 0 ? std::fabs(std::log(f / m)) : std::numeric_limits<double>::max());
-        if (noise) deviations[r].push_back(std::hypot(floor / v, noise->relative));
+        if (noise) deviations[r].push_back(std::sqrt(noise->VarianceAt(v)) / v);
       }
     }
   });

@@ -42,6 +42,13 @@ Transform TransformOf(Metric metric, const NoiseModel& noise) {
   if (transform.curve == Curve::kAsinh) {
     transform.knee = noise.floor / noise.relative;
     transform.mean_shift = 0.5 * noise.relative * noise.relative;
+    if (!(noise.poisson > 0)) return transform;
+    // Where the part of the value is known to be small the curve need not be logarithmic so soon.
+    constexpr double kLeastRelative = 0.02, kLeastCounts = 30;
+    transform.knee = std::max(noise.floor / std::max(noise.relative, kLeastRelative), kLeastCounts * noise.poisson);
+    const double at_knee = noise.relative * transform.knee;
+    transform.floor_shift = 0.5 * (noise.floor * noise.floor - at_knee * at_knee);
+    transform.poisson_shift = 0.5 * noise.poisson;
   }
   return transform;
 }

@@ -22,12 +22,16 @@ enum class Metric {
               // (transform.h)
 };
 
-// Noise of a reading v = f_r cos_theta_i: standard deviation sqrt(floor^2 + (relative v)^2).
+// Noise of a reading v = f_r cos_theta_i: variance floor^2 + poisson |v| + (relative v)^2.
 struct NoiseModel {
   double floor = 0;     // 1/sr
   double relative = 0;  // of 1
-  // Both are, as asinh needs them.
-  bool IsKnown() const { return floor > 0 && relative > 0; }
+  double poisson = 0;   // 1/sr, the reading that one count stands for
+  // As asinh needs it.
+  bool IsKnown() const { return (floor > 0 || poisson > 0) && relative > 0; }
+  // Of the terms that are no share of the value.
+  double DarkVarianceAt(double v) const { return floor * floor + poisson * (v < 0 ? -v : v); }
+  double VarianceAt(double v) const { return DarkVarianceAt(v) + relative * relative * v * v; }
 };
 
 struct MetricRow {
@@ -43,9 +47,11 @@ const std::vector<MetricRow>& MetricTable();
 const MetricRow& RowOf(Metric metric);
 const std::vector<Choice<Metric>>& MetricChoices();
 
-// The transform of a metric. Of kAsinh: knee floor / relative, for which the residual has the same standard deviation,
-// `relative`, at every value [asinh as the variance-stabilising transform of this noise]; the table's other rows do not
-// depend on the noise. Domain: kAsinh needs floor > 0 and relative > 0.
+// The transform of a metric. Of kAsinh without counting noise: knee floor / relative, for which the residual has the same
+// standard deviation, `relative`, at every value [asinh as the variance-stabilising transform of this noise]. With it: a
+// knee of no fewer than 30 counts, above which the curve's bend takes no mean that is not taken out of it (Transform),
+// and weights that level the residuals (sigma_weights.h). The table's other rows do not depend on the noise. Domain:
+// kAsinh needs a known noise.
 Transform TransformOf(Metric metric, const NoiseModel& noise);
 
 // Weight by the metric's sines of a sample, from the cosines of its polar angles.

@@ -134,6 +134,8 @@ struct RelativeCurve {
 
 struct AsinhCurve {
   V64 knee, mean_shift;
+  bool shifts;  // floor_shift, poisson_shift
+  V64 floor_shift, poisson_shift;
 
   HWY_INLINE V64 Value(V64 f, V64 c) const {
     const V64 v = hn::Mul(f, c);
@@ -157,7 +159,17 @@ struct AsinhCurve {
     *slope = hn::Mul(hn::Mul(c, inverse), hn::NegMulAdd(mean_shift, hn::Mul(ratio, ratio), one));
     // v / sqrt(v^2 + knee^2) at infinity is 1.
     const V64 sine = hn::IfThenElse(hn::Eq(a, infinity), one, hn::Mul(v, inverse));
-    return hn::NegMulAdd(mean_shift, sine, difference);
+    V64 shifted = hn::NegMulAdd(mean_shift, sine, difference);
+    if (shifts) {
+      // v (floor_shift + poisson_shift |v|) / (v^2 + knee^2)^(3/2) and its derivative.
+      const V64 three = Constant(3), inverse2 = hn::Mul(inverse, inverse), square = hn::Mul(sine, sine);
+      const V64 per_v = hn::Mul(inverse2, hn::MulAdd(poisson_shift, hn::Abs(sine), hn::Mul(floor_shift, inverse)));
+      shifted = hn::NegMulAdd(v, hn::IfThenElse(hn::Eq(a, infinity), hn::Zero(D64()), per_v), shifted);
+      const V64 of_floor = hn::Mul(hn::Mul(floor_shift, inverse), hn::NegMulAdd(three, square, one)),
+                of_poisson = hn::Mul(hn::Mul(poisson_shift, hn::Abs(sine)), hn::NegMulAdd(three, square, Constant(2)));
+      *slope = hn::NegMulAdd(hn::Mul(c, inverse2), hn::Add(of_floor, of_poisson), *slope);
+    }
+    return shifted;
   }
   HWY_INLINE V64 InverseSlope(V64 v) const { return Hypotenuse(v, knee); }
   HWY_INLINE V64 Curvature(V64 /*v*/) const { return hn::Zero(D64()); }
@@ -184,7 +196,9 @@ HWY_INLINE void WithCurve(const Transform& transform, const Run& run) {
     case Curve::kRelative:
       return run(RelativeCurve{});
     case Curve::kAsinh:
-      return run(AsinhCurve{Constant(transform.knee), Constant(transform.mean_shift)});
+      return run(AsinhCurve{Constant(transform.knee), Constant(transform.mean_shift),
+                            transform.floor_shift != 0 || transform.poisson_shift != 0, Constant(transform.floor_shift),
+                            Constant(transform.poisson_shift)});
   }
 }
 

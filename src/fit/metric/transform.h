@@ -16,14 +16,16 @@ enum class Curve {
   kRelative,    // f / m for a measured m > 0
   // asinh(v / knee), odd: linear below the knee, logarithmic above. For noise of standard deviation sqrt(s0^2 + (rho
   // v)^2) and the knee s0 / rho its noise is rho at every v, but a mean of -(rho^2 / 2) v / sqrt(v^2 + knee^2), which
-  // `mean_shift` = rho^2 / 2 takes out of the difference (second order of the delta method).
+  // `mean_shift` = rho^2 / 2 takes out of the difference (second order of the delta method). Of noise of another
+  // variance the mean is -(v / 2) variance / (v^2 + knee^2)^(3/2); with `floor_shift` = (s0^2 - (rho knee)^2) / 2 and
+  // `poisson_shift` = c / 2 that of s0^2 + c |v| + (rho v)^2 is taken out.
   kAsinh,
 };
 
 struct Transform {
   Curve curve = Curve::kLogOnePlus;
-  double knee = 1;        // kAsinh only
-  double mean_shift = 0;  // kAsinh only
+  double knee = 1;                                            // kAsinh only
+  double mean_shift = 0, floor_shift = 0, poisson_shift = 0;  // kAsinh only
 };
 
 // Whether the curve has a number for a measured f_r.

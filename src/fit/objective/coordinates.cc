@@ -37,6 +37,8 @@ Layout::Layout(const Recipe& recipe, const std::vector<std::string>& channels)
   }
   first_angle_ = coordinates_.size();
   if (recipe.instrument.alignment) AddAngles();
+  first_half_angle_ = coordinates_.size();
+  AddHalfAngles();
   shape_size_ = coordinates_.size();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i].group != ParameterGroup::kShape) AddLinear(parameters[i], recipe.parameters[i], channels);
@@ -113,7 +115,7 @@ std::vector<double> Layout::ProfileAt(std::size_t lobe, const double* u, std::ve
 }
 
 void Layout::AddMean(std::size_t lobe, Shape* shape) {
-  const Aperture aperture = recipe_.aperture();
+  const Aperture aperture = recipe_.widest_aperture();
   if (!aperture.any()) return;
   const Lobe& kind = recipe_.model.lobes[lobe];
   const double larger = std::max(aperture.source, aperture.detector),
@@ -146,6 +148,54 @@ void Layout::AddAngles() {
     // Beyond them a prior of this width has no weight that matters.
     const double bound = std::min(20 * prior, kPi / 18);
     coordinates_.push_back({name, -bound, bound, 1 / (prior * prior), true});
+  }
+}
+
+void Layout::AddHalfAngles() {
+  const auto add = [this](const char* name, double half_angle, const std::optional<double>& prior) {
+    if (!prior) return;
+    // A disc of no width is a point, at which nothing tells its half angle.
+    constexpr double kLeast = 0.1;
+    const double low = -std::min(kMostHalfAngleSigmas * *prior, (1 - kLeast) * half_angle),
+                 high = std::min(kMostHalfAngleSigmas * *prior, kLargestHalfAngle - half_angle);
+    coordinates_.push_back({name, low, high, 1 / (*prior * *prior), true});
+  };
+  const Aperture aperture = recipe_.aperture();
+  add("source", aperture.source, recipe_.instrument.source_prior);
+  add("detector", aperture.detector, recipe_.instrument.detector_prior);
+}
+
+Aperture Layout::ApertureAt(const double* u) const {
+  Aperture aperture = recipe_.aperture();
+  std::size_t next = first_half_angle_;
+  if (recipe_.instrument.source_prior) aperture.source += u[next++];
+  if (recipe_.instrument.detector_prior) aperture.detector += u[next];
+  return aperture;
+}
+
+void Layout::SetDiscs(const double* u, KernelModel* kernel) const {
+  if (first_half_angle_ == shape_size_) return;
+  const auto rules = [&](const std::vector<double>& at) {
+    std::vector<std::shared_ptr<const LobeMeanRule>> all;
+    for (const Shape& shape : shapes_)
+      all.push_back(std::make_shared<const LobeMeanRule>(WithDiscs(*shape.mean, ApertureAt(at.data()))));
+    return all;
+  };
+  std::vector<double> at(u, u + size());
+  const std::vector<std::shared_ptr<const LobeMeanRule>> here = rules(at);
+  for (std::size_t l = 0; l < here.size(); ++l) kernel->lobes[l].mean = here[l];
+  // Off by 1e-8 of the derivative of a lobe a tenth as wide as the disc.
+  constexpr double kStep = 1e-5;
+  for (std::size_t k = first_half_angle_; k < shape_size_; ++k) {
+    KernelHalfAngle half_angle;
+    half_angle.step = kStep * (k == first_half_angle_ && recipe_.instrument.source_prior ? ApertureAt(u).source
+                                                                                         : ApertureAt(u).detector);
+    at[k] = u[k] - half_angle.step;
+    half_angle.below = rules(at);
+    at[k] = u[k] + half_angle.step;
+    half_angle.above = rules(at);
+    at[k] = u[k];
+    kernel->half_angles.push_back(std::move(half_angle));
   }
 }
 
@@ -215,7 +265,7 @@ KernelModel Layout::ToKernel(const double* u) const {
   kernel.loss_scale = recipe_.loss_scale;
   kernel.gains = recipe_.instrument.drift.has_value();
   if (recipe_.instrument.alignment)
-    kernel.alignment = {recipe_.instrument.alignment->azimuths, {u + first_angle_, u + shape_size_}};
+    kernel.alignment = {recipe_.instrument.alignment->azimuths, {u + first_angle_, u + first_half_angle_}};
   for (std::size_t c = 0; recipe_.instrument.offset && c < channels_; ++c)
     kernel.offset.push_back(Value(linear_[c].back(), u));
   kernel.diffuse_kind = recipe_.model.diffuse;
@@ -263,6 +313,7 @@ KernelModel Layout::ToKernel(const double* u) const {
     first_linear += size;
     kernel.lobes.push_back(lobe);
   }
+  SetDiscs(u, &kernel);
   const std::size_t diffuse_size = DiffuseParameters(recipe_.model.diffuse);
   for (std::size_t c = 0; c < channels_; ++c) {
     for (std::size_t k = 0; k < diffuse_size; ++k) kernel.diffuse.push_back(Value(linear_[c][first_linear + k], u));

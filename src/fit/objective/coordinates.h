@@ -41,9 +41,12 @@ class Layout {
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
   std::size_t channels() const { return channels_; }
   // Coordinates [0, shape_size()) are common to the channels: shapes, lobe by lobe, then the angles of the alignment,
-  // from first_angle() on. The rest are Fresnel parameters, albedos and offsets.
+  // from first_angle() on, then those of the discs, from first_half_angle() on, as differences from the recipe's. The rest are Fresnel parameters, albedos and offsets.
   std::size_t shape_size() const { return shape_size_; }
   std::size_t first_angle() const { return first_angle_; }
+  std::size_t first_half_angle() const { return first_half_angle_; }
+  // The discs at `u`.
+  Aperture ApertureAt(const double* u) const;
   const Recipe& recipe() const { return recipe_; }
   // True where the lobe moves in slope coordinates.
   bool in_slope_space(std::size_t lobe) const { return shapes_[lobe].slope; }
@@ -116,8 +119,11 @@ class Layout {
   void AddMean(std::size_t lobe, Shape* shape);
   // Parameters of the profile at `u`, and where asked d(parameter) / d(coordinate) of the free ones.
   std::vector<double> ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes = nullptr) const;
-  bool IsGamma(std::size_t lobe) const { return FamilyOf(recipe_.model.lobes[lobe].ndf) == NdfFamily::kStudent; }
+  bool IsGamma(std::size_t lobe) const { return FamilyOf(recipe_.model.lobes[lobe].ndf) == Family::kStudent; }
   void AddAngles();
+  void AddHalfAngles();
+  // Sets the lobes' rules at `u` and those of the half angles' columns, where there are such.
+  void SetDiscs(const double* u, KernelModel* kernel) const;
   void AddOffset(const std::vector<std::string>& channels);
   void AddLinear(const Parameter& parameter, const ParameterRecipe& entry, const std::vector<std::string>& channels);
   double Value(const Linear& linear, const double* u) const {
@@ -131,7 +137,7 @@ class Layout {
 
   Recipe recipe_;
   std::size_t channels_;
-  std::size_t first_angle_ = 0, shape_size_ = 0;
+  std::size_t first_angle_ = 0, first_half_angle_ = 0, shape_size_ = 0;
   std::vector<Coordinate> coordinates_;
   std::vector<Shape> shapes_;
   std::vector<std::vector<Linear>> linear_;

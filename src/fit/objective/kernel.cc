@@ -11,7 +11,7 @@ namespace lobefit {
 std::size_t KernelModel::shape_columns() const {
   std::size_t sum = 0;
   for (const KernelLobe& lobe : lobes) sum += lobe.columns;
-  return sum + alignment.angles.size();
+  return sum + alignment.angles.size() + half_angles.size();
 }
 
 std::size_t KernelModel::columns() const {

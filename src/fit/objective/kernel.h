@@ -53,6 +53,12 @@ struct KernelAlignment {
   std::vector<double> angles;    // e_x, e_y, e_z of the second turn and so on; empty: the sample stands straight
 };
 
+// A half angle that is fitted: the lobes' rules with it `step` smaller and larger, whose values give its column.
+struct KernelHalfAngle {
+  double step = 0;
+  std::vector<std::shared_ptr<const LobeMeanRule>> below, above;  // [lobe]
+};
+
 struct KernelModel {
   std::vector<KernelLobe> lobes;
   std::vector<double> diffuse;  // [channel][DiffuseParameters(diffuse_kind)]; empty: no diffuse part
@@ -62,14 +68,15 @@ struct KernelModel {
   Loss loss = Loss::kNone;
   double loss_scale = 1;
   KernelAlignment alignment;
-  std::vector<double> offset;  // [channel], of f_r cos_theta_i, 1/sr; empty: none
-  bool gains = false;          // readings have gains, whose logarithm has a column
+  std::vector<KernelHalfAngle> half_angles;  // those that are fitted
+  std::vector<double> offset;                // [channel], of f_r cos_theta_i, 1/sr; empty: none
+  bool gains = false;                        // readings have gains, whose logarithm has a column
   // Weights of the priors and the solver's coordinates (Coordinate::prior); empty: none.
   std::vector<double> prior, coordinates;
 
-  std::size_t shape_columns() const;  // with the angles of the alignment
-  // Columns of one channel: shape coordinates of all lobes, the angles of the alignment (central differences of the
-  // model, 1e-6 of them), Fresnel parameters lobe by lobe, the diffuse albedo, the offset, the logarithm of the sample's gain where readings have them, the residual.
+  std::size_t shape_columns() const;  // with the angles of the alignment and the discs
+  // Columns of one channel: shape coordinates of all lobes, the angles of the alignment and of the discs (central
+  // differences of the model, 1e-6 of them), Fresnel parameters lobe by lobe, the diffuse albedo, the offset, the logarithm of the sample's gain where readings have them, the residual.
   std::size_t columns() const;
 };
 

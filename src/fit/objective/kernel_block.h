@@ -13,6 +13,7 @@
 #include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/diffuse_facets.h"
 #include "lobefit/core/brdf/lobe.h"
+#include "lobefit/fit/objective/angle_differences.h"
 #include "lobefit/fit/objective/block_inputs.h"
 #include "lobefit/fit/objective/coat_stage.h"
 #include "lobefit/fit/objective/kernel.h"
@@ -70,7 +71,6 @@ class Block {
         {&residual_, channels},
         {&slope_, slopes_ ? channels : 0},
         {&moved_, model.alignment.angles.empty() ? 0 : 6},
-        {&by_angle_, gradient ? model.alignment.angles.size() * channels : 0},
         {&gain_, model.gains ? 1 : 0},
         {&gain_column_, model.gains && slopes_ ? channels : 0},
         {&inverse_cos_i_, model.offset.empty() ? 0 : 1},
@@ -86,18 +86,14 @@ class Block {
       *array = {next, count * kBlock};
       next += count * kBlock;
     }
-    if (!model.alignment.angles.empty() && gradient) {
-      straight_ = std::make_unique<KernelModel>(model);
-      straight_->alignment = {};
-      straight_->gains = false;
-      straight_->offset.clear();
-      for (std::size_t k = 0; k < 6; ++k) moved_samples_.direction[k] = moved_.data() + k * kBlock;
-      moved_samples_.count = kBlock;
-      probe_ = std::make_unique<Block>(moved_samples_, *straight_, false);
-    }
+    if (gradient && (!model.alignment.angles.empty() || !model.half_angles.empty()))
+      differences_ = std::make_unique<AngleDifferences<Block>>(samples, model, kBlock);
     if (const std::size_t coat = CoatOf(model); coat < lobes) coat_.emplace(model, coat, gradient);
     std::fill(diffuse_.begin(), diffuse_.end(), coat_ ? coat_->lambert() : kInvPi);
     std::fill(ones_.begin(), ones_.end(), 1.0);
+    const bool constant = model.diffuse_kind == Diffuse::kLambert && !coat_ && lobes > 0;
+    if (constant && model.lobes[0].mean != nullptr && model.lobes[0].mean->region != nullptr)
+      cut_rule_ = model.lobes[0].mean.get();
     if (model.diffuse_kind == Diffuse::kMicrofacet && !model.diffuse.empty())
       facets_.emplace(model.lobes[0].kind, model.lobes[0].shape.slope);
     for (std::size_t c = 0; directional && c < channels; ++c)
@@ -116,14 +112,19 @@ class Block {
     // The irradiance is the nominal one, however the sample stands.
     cos_i_ = Padded(directions.wi_z, 0.0, &cos_i_pad_);
     if (!model_.alignment.angles.empty()) {
-      if (gradient_) DifferenceAngles(begin);
-      MoveDirections(begin, model_.alignment.angles);
+      TurnDirections(TurnsOf(model_.alignment.azimuths, model_.alignment.angles), samples_.direction, samples_.turn,
+                     begin, count_, kBlock, moved_.data());
       for (std::size_t k = 0; k < 6; ++k) *fields[k] = moved_.data() + k * kBlock;
     }
+    if (differences_ != nullptr) differences_->Evaluate(begin, count);
     const DirectionArrays below = coat_ ? coat_->Enter(directions) : directions;
     for (std::size_t l = 0; l < model_.lobes.size(); ++l)
       EvaluateLobe(l, IsCoat(model_.lobes[l].kind.fresnel) ? directions : below);
     for (std::size_t c = 0; c < directional_.size(); ++c) EvaluateDiffuse(c, directions);
+    if (cut_rule_ != nullptr) {
+      ConstantMeans(directions, *cut_rule_, diffuse_.data());
+      for (std::size_t i = 0; i < count_; ++i) diffuse_[i] *= kInvPi;
+    }
     if (facets_) {
       facets_->Evaluate(directions, diffuse_.data(), gradient_ ? gradients_.data() : nullptr);
       std::fill(diffuse_.begin() + static_cast<std::ptrdiff_t>(count_), diffuse_.end(), 0.0);
@@ -202,8 +203,8 @@ class Block {
       if (model_.lobes[l].mean != nullptr) AddArgumentColumns(l, c, slope_of(l), to);
       to += model_.lobes[l].columns * kBlock;
     }
-    for (std::size_t k = 0; k < model_.alignment.angles.size(); ++k, to += kBlock)
-      arrays::Multiply(outside, by_angle_.data() + (k * model_.channels + c) * kBlock, padded_, to);
+    for (std::size_t k = 0; differences_ != nullptr && k < differences_->size(); ++k, to += kBlock)
+      arrays::Multiply(outside, differences_->column(k, c), padded_, to);
     for (std::size_t l = 0; l < model_.lobes.size(); ++l) {
       for (std::size_t k = 0; k < FresnelParameters(model_.lobes[l].kind.fresnel); ++k, to += kBlock) {
         arrays::Product(slope_of(l), specular_.data() + l * kBlock, FactorGradient(l, k, c), padded_, to);
@@ -254,34 +255,6 @@ class Block {
   const double* f(std::size_t c) const { return f_.data() + c * kBlock; }
 
  private:
-  // The directions of this block in the frame of the sample.
-  void MoveDirections(std::size_t begin, const std::vector<double>& angles) {
-    TurnDirections(TurnsOf(model_.alignment.azimuths, angles), samples_.direction, samples_.turn, begin, count_, kBlock,
-                   moved_.data());
-  }
-
-  // Central differences of f_r by the angles.
-  void DifferenceAngles(std::size_t begin) {
-    // Of a lobe 0.01 wide off by 1e-8 of the derivative; rounding adds 1e-10.
-    constexpr double kStep = 2e-6;
-    for (std::size_t k = 0; k < model_.alignment.angles.size(); ++k) {
-      for (const double sign : {1.0, -1.0}) {
-        std::vector<double> angles = model_.alignment.angles;
-        angles[k] += sign * kStep;
-        MoveDirections(begin, angles);
-        probe_->Evaluate(0, count_);
-        for (std::size_t c = 0; c < model_.channels; ++c) {
-          double* to = by_angle_.data() + (k * model_.channels + c) * kBlock;
-          if (sign > 0) {
-            std::copy_n(probe_->f(c), padded_, to);
-          } else {
-            for (std::size_t i = 0; i < padded_; ++i) to[i] = (to[i] - probe_->f(c)[i]) / (2 * kStep);
-          }
-        }
-      }
-    }
-  }
-
   // The reading f_r cos_theta_i is too high by the offset.
   void AddOffset() {
     std::fill(inverse_cos_i_.begin(), inverse_cos_i_.end(), 0.0);
@@ -472,6 +445,7 @@ class Block {
   const double* cos_i_ = nullptr;
   std::optional<DiffuseFacets> facets_;
   std::optional<CoatStage> coat_;
+  const LobeMeanRule* cut_rule_ = nullptr;       // of discs that the horizon may cut, over a Lambert part; null: none
   std::vector<DirectionalDiffuse> directional_;  // [channel]
   std::size_t shape_size_ = kEllipseParameters;  // most of a lobe
   std::size_t contracted_size_ = 0;              // columns of all lobes' shapes
@@ -486,12 +460,8 @@ class Block {
   std::span<double> argument_gradients_, argument_contracted_, factor_by_argument_;
   std::span<double> f_, residual_, slope_, columns_, sqrt_weight_, gain_, gain_column_, inverse_cos_i_, reading_slope_,
       below_slope_;
-  // Of the alignment: directions in the sample's frame, derivatives of f_r by its angles [angle][channel], and the
-  // model without instrument that gives them.
-  std::span<double> moved_, by_angle_;
-  KernelSamples moved_samples_ = {};
-  std::unique_ptr<KernelModel> straight_;
-  std::unique_ptr<Block> probe_;
+  std::span<double> moved_;  // directions in the sample's frame, where it stands crooked
+  std::unique_ptr<AngleDifferences<Block>> differences_;
   std::vector<double> cos_i_pad_, cos_o_pad_, measured_pad_;
 };
 

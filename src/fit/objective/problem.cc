@@ -31,6 +31,23 @@ void MergeArrows(const std::vector<KernelSums>& partial, std::vector<GainArrow>*
   }
 }
 
+// Where both directions graze, at a difference angle beyond 70 degrees, the part of a disc above the horizon is too long
+// for its mean (GgxRegionMean).
+constexpr double kLeastCosineOfCut = 0.35;
+double DifferenceCosine(const Samples& samples, std::size_t i) { return 0.5 * Norm(samples.wi(i) + samples.wo(i)); }
+
+// Whether samples are fitted whose disc the horizon cuts: where every lobe has its mean over the part above
+// (LobeMeanRule), and what is diffuse is constant.
+bool TakesCutDiscs(const Recipe& recipe) {
+  const Model& model = recipe.model;
+  const Aperture aperture = recipe.aperture();
+  const bool one_disc = aperture.source == 0 || aperture.detector == 0;
+  const bool constant = model.diffuse == Diffuse::kNone || model.diffuse == Diffuse::kLambert;
+  return one_disc && constant && aperture.mean == ApertureMean::kFlux && CoatOf(model) == model.lobes.size() &&
+         !recipe.instrument.source_prior && !recipe.instrument.detector_prior &&
+         std::all_of(model.lobes.begin(), model.lobes.end(), HasMeanInClosedForm);
+}
+
 }  // namespace
 
 std::size_t RunCount(std::size_t count) { return std::clamp<std::size_t>(count / kMinRun, 1, kMaxRuns); }
@@ -44,15 +61,17 @@ void SetAsideForRecipe(const Recipe& recipe, Measurement* measurement) {
   Samples& samples = measurement->samples;
   const double cos_max = recipe.theta_max >= kPi / 2 - 1e-9 ? 0.0 : std::cos(recipe.theta_max + 1e-9);
   std::vector<std::uint8_t> keep(samples.size(), 1);
-  const Aperture aperture = recipe.aperture();
+  const Aperture aperture = recipe.widest_aperture();
+  const bool takes_cut = TakesCutDiscs(recipe);
   const double least_i = aperture.source > 0 ? std::sin(aperture.source) : -1,
-               least_o = aperture.detector > 0 ? std::sin(aperture.detector) : -1;
+               least_o = aperture.detector > 0 ? std::sin(std::max(aperture.detector, aperture.across)) : -1;
   std::size_t beyond = 0, negative = 0, at_horizon = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.wi_z[i] < cos_max || samples.wo_z[i] < cos_max) {
       keep[i] = 0;
       ++beyond;
-    } else if (samples.wi_z[i] <= least_i || samples.wo_z[i] <= least_o) {
+    } else if ((samples.wi_z[i] <= least_i || samples.wo_z[i] <= least_o) &&
+               !(takes_cut && DifferenceCosine(samples, i) >= kLeastCosineOfCut)) {
       keep[i] = 0;
       ++at_horizon;
     }

@@ -52,8 +52,9 @@ KernelModel SurfaceOf(const Material& material, const Aperture& aperture) {
 
 Reading::Reading(const Material& material, std::optional<Beam> held) : held_(held) {
   const InstrumentUsed instrument = material.instrument.value_or(InstrumentUsed{});
-  model_ = SurfaceOf(material, {instrument.source, instrument.detector,
-                                instrument.mean == "plain" ? ApertureMean::kPlain : ApertureMean::kFlux});
+  model_ =
+      SurfaceOf(material, {instrument.source, instrument.detector,
+                           instrument.mean == "plain" ? ApertureMean::kPlain : ApertureMean::kFlux, instrument.across});
   if (!instrument.alignment.empty()) {
     turns_.azimuths = instrument.azimuths;
     model_.alignment.azimuths = instrument.azimuths;

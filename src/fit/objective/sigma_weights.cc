@@ -8,8 +8,9 @@ namespace lobefit {
 SigmaWeights::SigmaWeights(const Samples& samples, Metric metric, const NoiseModel& noise)
     : samples_(samples),
       transform_(TransformOf(metric, noise)),
-      relative_(RowOf(metric).curve == Curve::kAsinh ? noise.relative : 0.0) {
-  if (samples.sigma.empty()) return;
+      noise_(RowOf(metric).curve == Curve::kAsinh ? noise : NoiseModel{}) {
+  if (samples.sigma.empty() && !(noise_.poisson > 0)) return;
+  if (!samples.sigma.empty()) noise_.floor = 0;
   std::vector<double> variance = Variances(samples.values, 0);
   const auto middle = variance.begin() + static_cast<std::ptrdiff_t>(variance.size() / 2);
   std::nth_element(variance.begin(), middle, variance.end());
@@ -31,8 +32,9 @@ std::vector<double> SigmaWeights::Variances(const std::vector<std::vector<double
   const double* cos_i = samples_.wi_z.data() + begin;
   InverseSlopes(transform_, mean.data(), cos_i, count, variance.data());
   for (std::size_t i = 0; i < count; ++i) {
-    const double s = std::hypot(samples_.sigma[begin + i], relative_ * mean[i]) * cos_i[i] / variance[i];
-    variance[i] = s * s <= kMost ? s * s : kMost;
+    const double stated = samples_.sigma.empty() ? 0.0 : samples_.sigma[begin + i] * cos_i[i];
+    const double s2 = (stated * stated + noise_.VarianceAt(mean[i] * cos_i[i])) / (variance[i] * variance[i]);
+    variance[i] = s2 <= kMost ? s2 : kMost;
   }
   return variance;
 }

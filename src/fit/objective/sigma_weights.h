@@ -1,4 +1,4 @@
-// Weights from stated uncertainties, for the metric that is fitted.
+// Weights from stated uncertainties and from counting noise, for the metric that is fitted.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,8 @@ namespace lobefit {
 // model's misfit and not the instrument limits a sample; so no sample weighs more than twice the middle one.
 class SigmaWeights {
  public:
-  // `noise.relative` is added to the stated uncertainty of metrics that know it (kAsinh). `samples` must outlive the
-  // object.
+  // Of metrics that know the noise (kAsinh): `noise.relative` and `noise.poisson` are added to the stated uncertainty, and
+  // with counting noise, which the curve does not level, there are weights without one. `samples` must outlive the object.
   SigmaWeights(const Samples& samples, Metric metric, const NoiseModel& noise);
 
   // Of nothing to weigh by: no uncertainty is stated, or all are 0.
@@ -30,7 +30,7 @@ class SigmaWeights {
 
   const Samples& samples_;
   Transform transform_;
-  double relative_;
+  NoiseModel noise_;  // what is not stated
   double median_ = 0;
 };
 

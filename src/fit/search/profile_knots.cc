@@ -11,7 +11,7 @@
 namespace lobefit {
 namespace {
 
-bool NeedsKnots(const Lobe& lobe) { return FamilyOf(lobe.ndf) == NdfFamily::kProfile && lobe.grid == nullptr; }
+bool NeedsKnots(const Lobe& lobe) { return FamilyOf(lobe.ndf) == Family::kProfile && lobe.grid == nullptr; }
 
 // Beyond, densities are 1e-9 of the peak's and less.
 constexpr double kLastKnot = 256;

@@ -363,7 +363,9 @@ class CsvReader {
     }
   }
 
-  bool HasSigmas() const { return layout_.sigma != kNoColumn || !layout_.channel_sigmas.empty(); }
+  bool HasSigmas() const {
+    return layout_.sigma != kNoColumn || !layout_.channel_sigmas.empty() || layout_.groups[0].sigma != kNoColumn;
+  }
   bool HasWeights() const { return layout_.weight != kNoColumn || HasSigmas(); }
 
   // The row's weight, or the standard deviation of its f_r (root mean square over the channels; NaN where it is not
@@ -392,6 +394,7 @@ class CsvReader {
       ++count;
     };
     if (layout_.sigma != kNoColumn) add(layout_.sigma, group.values[0]);
+    if (group.sigma != kNoColumn) add(group.sigma, group.values[0]);
     for (std::size_t c = 0; c < layout_.channel_sigmas.size(); ++c) add(layout_.channel_sigmas[c], group.values[c]);
     *weight = count > 0 ? factor * std::sqrt(variance / count) : std::nan("");
     return true;

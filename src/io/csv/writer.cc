@@ -25,8 +25,16 @@ bool IsKey(const std::string& comment) {
 }
 
 void WriteInstrument(const StatedInstrument& instrument, std::ostream& out) {
-  if (instrument.source) out << "# source: " << FormatDouble(RadiansToDegrees(*instrument.source)) << '\n';
-  if (instrument.detector) out << "# detector: " << FormatDouble(RadiansToDegrees(*instrument.detector)) << '\n';
+  const auto write = [&out](const char* key, const std::optional<double>& half_angle,
+                            const std::optional<double>& prior, const std::optional<double>& across) {
+    if (!half_angle) return;
+    out << "# " << key << ": " << FormatDouble(RadiansToDegrees(*half_angle));
+    if (prior) out << " +- " << FormatDouble(RadiansToDegrees(*prior));
+    if (across) out << " x " << FormatDouble(RadiansToDegrees(*across));
+    out << '\n';
+  };
+  write("source", instrument.source, instrument.source_prior, {});
+  write("detector", instrument.detector, instrument.detector_prior, instrument.detector_across);
   if (instrument.plain_mean) out << "# mean: " << (*instrument.plain_mean ? "plain" : "flux") << '\n';
 }
 

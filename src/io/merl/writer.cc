@@ -77,10 +77,12 @@ void WriteMerl(const BrdfFunction& brdf, const Channels& channels, const MerlWri
       Vec3 wi, wo;
       FromHalfDifference(angles, &wi, &wo);
       const bool above = wi.z > 1e-9 && wo.z > 1e-9;
-      if (above) brdf(wi, wo, values.data());
+      const bool straight = above && (!options.covers || options.covers(wi, wo));
+      const bool measured = straight || (above && options.covers(wo, wi));
+      if (measured) brdf(straight ? wi : wo, straight ? wo : wi, values.data());
       if (grey) values[1] = values[2] = values[0];
       for (std::size_t c = 0; c < 3; ++c) {
-        const double stored = above ? std::max(0.0, values[c] / kMerlScale[c]) : -1.0;
+        const double stored = measured ? std::max(0.0, values[c] / kMerlScale[c]) : -1.0;
         std::memcpy(bytes.data() + 12 + 8 * (cell + c * kCells), &stored, 8);
       }
     }

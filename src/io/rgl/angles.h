@@ -14,6 +14,10 @@ inline double RglX(double theta) { return std::sqrt(2 * theta / kPi); }
 inline double RglPhi(double y) { return (2 * y - 1) * kPi; }
 inline double RglY(double phi) { return (phi + kPi) / (2 * kPi); }
 
+// Directions nearer to the horizon than this (0.06 degrees) have no f_r: it is the table's value over a cosine that the
+// table's float32 angles do not determine (many files end with theta_i = float(pi / 2)).
+inline constexpr double kRglHorizon = 1e-3;
+
 // d(theta) d(phi) sin(theta) = 2 pi^2 x sin(theta) dx dy: solid angle of the micro normal per area of the unit square.
 inline double RglNormalJacobian(double x, double theta) { return 2 * kPi * kPi * x * std::sin(theta); }
 

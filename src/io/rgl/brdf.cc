@@ -25,6 +25,9 @@ Interval Locate(const std::vector<float>& nodes, double angle) {
   return {index, std::clamp((angle - low) / (high - low), 0.0, 1.0)};
 }
 
+// The nodes are float32.
+constexpr double kSameAngle = 1e-4;
+
 }  // namespace
 
 RglBrdf::RglBrdf(const std::filesystem::path& path, std::string_view bytes) {
@@ -36,12 +39,23 @@ RglBrdf::RglBrdf(const std::filesystem::path& path, std::string_view bytes) {
   for (std::size_t slice = 0; slice < tables_.slices(); ++slice) {
     warps_.emplace_back(&tables_.vndf.values[slice * size], tables_.vndf.width(), tables_.vndf.height());
   }
+  light_z_.reserve(tables_.slices() * tables_.nodes());
+  for (std::size_t slice = 0; slice < tables_.slices(); ++slice) {
+    // Of many files the last polar angle is the horizon.
+    const double viewer_z = std::cos(static_cast<double>(tables_.theta[slice % tables_.theta.size()]));
+    for (std::size_t node = 0; node < tables_.nodes(); ++node) {
+      const std::size_t width = tables_.spectra.width();
+      const double z = LightOf(slice, node % width, node / width).z;
+      light_z_.push_back(viewer_z > kRglHorizon && z > kRglHorizon ? static_cast<float>(z) : 0.0F);
+    }
+  }
 }
 
-void RglBrdf::Evaluate(const Vec3& wi, const Vec3& wo, double* values) const {
-  std::fill(values, values + channels_.size(), 0.0);
-  if (!(wi.z > 0) || !(wo.z > 0)) return;
-  Vec3 s = wi, t = wo;
+RglBrdf::Place RglBrdf::Find(const Vec3& wi, const Vec3& wo) const {
+  Place place = {};
+  place.wi = wi;
+  place.wo = wo;
+  Vec3 &s = place.wi, &t = place.wo;
   const bool flip_y = reduction_ > 1 && t.y > 0;
   const bool flip_x = reduction_ == 2 ? flip_y : reduction_ == 4 && t.x > 0;
   if (flip_x) {
@@ -54,37 +68,71 @@ void RglBrdf::Evaluate(const Vec3& wi, const Vec3& wo, double* values) const {
   }
   const Vec3 m = HalfVector(s, t);
   const double theta_t = PolarAngle(t), phi_t = Azimuth(t);
-  Vec2 u = {RglX(PolarAngle(m)), RglY(Azimuth(m) - (isotropic() ? phi_t : 0.0))};
-  u.y -= std::floor(u.y);
+  place.u = {RglX(PolarAngle(m)), RglY(Azimuth(m) - (isotropic() ? phi_t : 0.0))};
+  place.u.y -= std::floor(place.u.y);
 
   const Interval phi = Locate(tables_.phi, phi_t), theta = Locate(tables_.theta, theta_t);
-  std::array<BilinearWarp::Part, 4> parts;
-  std::array<std::size_t, 4> slices;
-  std::size_t count = 0;
   for (const std::size_t p : {0, 1}) {
     for (const std::size_t q : {0, 1}) {
       const double share = (p == 0 ? 1 - phi.fraction : phi.fraction) * (q == 0 ? 1 - theta.fraction : theta.fraction);
       if (share == 0) continue;
-      slices[count] = (phi.index + p) * tables_.theta.size() + theta.index + q;
-      parts[count] = {&warps_[slices[count]], share};
-      ++count;
+      place.slices[place.count] = (phi.index + p) * tables_.theta.size() + theta.index + q;
+      place.parts[place.count] = {&warps_[place.slices[place.count]], share};
+      ++place.count;
     }
   }
   double pdf = 0;
-  const Vec2 point = BilinearWarp::Invert(std::span(parts.data(), count), u, &pdf);
-  double factor = 1 / s.z;
+  place.point = BilinearWarp::Invert(std::span(place.parts.data(), place.count), place.u, &pdf);
+  return place;
+}
+
+void RglBrdf::Evaluate(const Vec3& wi, const Vec3& wo, double* values) const {
+  std::fill(values, values + channels_.size(), 0.0);
+  if (!(wi.z > 0) || !(wo.z > 0)) return;
+  const Place place = Find(wi, wo);
+  double factor = 1 / wi.z;
   if (tables_.jacobian) {
-    factor *= Bilinear(tables_.ndf.values.data(), tables_.ndf.width(), tables_.ndf.height(), u) /
+    factor *= Bilinear(tables_.ndf.values.data(), tables_.ndf.width(), tables_.ndf.height(), place.u) /
               (4 * Bilinear(tables_.sigma.values.data(), tables_.sigma.width(), tables_.sigma.height(),
-                            {RglX(theta_t), RglY(phi_t)}));
+                            {RglX(PolarAngle(place.wo)), RglY(Azimuth(place.wo))}));
   }
   const RglGrid& spectra = tables_.spectra;
   for (std::size_t c = 0; c < channels_.size(); ++c) {
-    for (std::size_t k = 0; k < count; ++k) {
-      const float* table = &spectra.values[(slices[k] * channels_.size() + c) * tables_.nodes()];
-      values[c] += factor * parts[k].share * Bilinear(table, spectra.width(), spectra.height(), point);
+    for (std::size_t k = 0; k < place.count; ++k) {
+      const float* table = &spectra.values[(place.slices[k] * channels_.size() + c) * tables_.nodes()];
+      values[c] += factor * place.parts[k].share * Bilinear(table, spectra.width(), spectra.height(), place.point);
     }
   }
+}
+
+Vec3 RglBrdf::LightOf(std::size_t slice, std::size_t column, std::size_t row) const {
+  double pdf = 0;
+  const Vec2 u = warps_[slice].Sample({static_cast<double>(column) / static_cast<double>(tables_.spectra.width() - 1),
+                                       static_cast<double>(row) / static_cast<double>(tables_.spectra.height() - 1)},
+                                      &pdf);
+  const double theta = static_cast<double>(tables_.theta[slice % tables_.theta.size()]),
+               phi = static_cast<double>(tables_.phi[slice / tables_.theta.size()]);
+  return Reflect(FromSpherical(theta, phi), FromSpherical(RglTheta(u.x), RglPhi(u.y) + (isotropic() ? phi : 0.0)));
+}
+
+bool RglBrdf::Covers(const Vec3& wi, const Vec3& wo) const {
+  if (!(wi.z > 0) || !(wo.z > 0)) return false;
+  const double theta = PolarAngle(wo), least = static_cast<double>(tables_.theta.front()),
+               most = static_cast<double>(tables_.theta.back());
+  if (theta < least - kSameAngle || theta > most + kSameAngle) return false;
+  const Place place = Find(wi, wo);
+  const std::size_t width = tables_.spectra.width(), height = tables_.spectra.height();
+  const auto column = std::min(static_cast<std::size_t>(place.point.x * static_cast<double>(width - 1)), width - 2),
+             row = std::min(static_cast<std::size_t>(place.point.y * static_cast<double>(height - 1)), height - 2);
+  double lowest = 1;
+  for (std::size_t k = 0; k < place.count; ++k) {
+    for (const std::size_t node :
+         {row * width + column, row * width + column + 1, (row + 1) * width + column, (row + 1) * width + column + 1}) {
+      lowest = std::min(lowest, static_cast<double>(light_z_[place.slices[k] * tables_.nodes() + node]));
+    }
+  }
+  // A light below all nodes around it would be divided by a smaller cosine than any that was measured.
+  return lowest > 0 && wi.z >= lowest;
 }
 
 }  // namespace lobefit

@@ -28,10 +28,6 @@ double IncidenceMeasure(const std::vector<float>& theta, std::size_t i) {
   return std::max(std::cos(low) - std::cos(high), 1e-12);  // angles that float32 hardly tells apart
 }
 
-// Directions nearer to the horizon than this (0.06 degrees) have no f_r: it is the table's value over a cosine that the
-// table's float32 angles do not determine (many files end with theta_i = float(pi / 2)).
-constexpr double kHorizon = 1e-3;
-
 // Micro normals nearer to the surface's than this are it: a column of the table at u.x = 0.
 constexpr double kAtNormal = 1e-9;
 
@@ -67,7 +63,7 @@ class Slice {
     const Vec3 normal = FromSpherical(result.theta_m, RglPhi(result.u.y) + turn_);
     result.cos_m = Dot(normal, viewer_);
     result.light = Reflect(viewer_, normal);
-    result.above = result.cos_m > 0 && result.light.z > kHorizon && viewer_.z > kHorizon;
+    result.above = result.cos_m > 0 && result.light.z > kRglHorizon && viewer_.z > kRglHorizon;
     return result;
   }
 

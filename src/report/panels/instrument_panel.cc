@@ -59,8 +59,17 @@ std::string Words(const InstrumentUsed& used, const std::vector<std::string>& ch
   std::string words = "Bars and the ellipse: 95 %. Shaded: the discs, the scatter of the gains. Rings: the prior.";
   const auto add = [&words](const std::string& sentence) { words += (words.empty() ? "" : " ") + sentence; };
   if (used.source > 0 || used.detector > 0)
-    add(fmt::format("Half angles of source and detector: {:.3g}° and {:.3g}°, {} mean.", RadiansToDegrees(used.source),
-                    RadiansToDegrees(used.detector), used.mean));
+    add(fmt::format("Half angles of source and detector: {:.3g}° and {:.3g}°{}, {} mean.",
+                    RadiansToDegrees(used.source), RadiansToDegrees(used.detector),
+                    used.across > 0 ? fmt::format(" x {:.3g}°", RadiansToDegrees(used.across)) : std::string(),
+                    used.mean));
+  for (const InstrumentHalfAngle& half_angle : used.half_angles) {
+    const ValueWithError value =
+        RoundToError(RadiansToDegrees(half_angle.value), RadiansToDegrees(half_angle.standard_error));
+    add(fmt::format("The {}'s was fitted, {}° ± {}° (given {:.3g}° ± {:.2g}°){}.", half_angle.name, value.value,
+                    value.error, RadiansToDegrees(half_angle.given), RadiansToDegrees(half_angle.prior),
+                    half_angle.determined ? "" : ": not determined"));
+  }
   if (used.drift)
     add(fmt::format("Gains scatter by {:.2g} % ({}).", 100 * used.drift->sd,
                     used.drift->estimated ? "estimated" : "given"));

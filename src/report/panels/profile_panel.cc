@@ -23,7 +23,7 @@ struct ProfileCurve {
 
 // ln of the density of slopes over its peak at r widths.
 double LogDensity(const Lobe& lobe, const std::vector<double>& numbers, double r) {
-  if (FamilyOf(lobe.ndf) == NdfFamily::kStudent) return -numbers[0] * std::log1p(r * r / (numbers[0] - 1));
+  if (FamilyOf(lobe.ndf) == Family::kStudent) return -numbers[0] * std::log1p(r * r / (numbers[0] - 1));
   const double u = std::log1p(r * r);
   return Profile(GridOf(lobe)->spline(), numbers).Excess(u) - 2 * u;
 }
@@ -71,8 +71,8 @@ std::optional<Panel> ProfilePanel(const ReportData& data) {
   const Material& material = data.material;
   const Model& model = material.model;
   const auto radial = [](const Lobe& lobe) {
-    const NdfFamily family = FamilyOf(lobe.ndf);
-    return family == NdfFamily::kProfile || family == NdfFamily::kStudent;
+    const Family family = FamilyOf(lobe.ndf);
+    return family == Family::kProfile || family == Family::kStudent;
   };
   const auto found = std::find_if(model.lobes.begin(), model.lobes.end(), radial);
   if (found == model.lobes.end()) return std::nullopt;

@@ -22,11 +22,11 @@ struct LitSphere {
 };
 
 // f_r of one pair of directions; false where it is not known.
-using BrdfFunction = std::function<bool(const Vec3& wi, const Vec3& wo, double* f_r)>;
+using ShownBrdf = std::function<bool(const Vec3& wi, const Vec3& wo, double* f_r)>;
 
 // Towards the light; the viewer is at +z.
 Vec3 SphereLight();
-LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, std::size_t channels, int size);
+LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size);
 LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int size);
 // The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
 std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size);
@@ -34,7 +34,7 @@ std::optional<LitSphere> LightMeasured(const Measurement& measurement, const Cha
 // Under an analytic sky with a low sun, 104 pixels wide. Light comes from `count` directions: a third
 // drawn from the density of slopes of `lobe`, a third by the cosine, a third around the sun, weighted by the balance
 // heuristic; the same ones for any brdf, so that two spheres can be compared.
-LitSphere SkySphere(const BrdfFunction& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color,
+LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color,
                     std::size_t channels, int count, int threads);
 
 // Factor before ToScreen: highlights may saturate, but not so far that the rest is black.

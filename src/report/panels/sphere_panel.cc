@@ -27,7 +27,7 @@ constexpr double kGlow = 24;          // sharpness of the glow around the sun
 constexpr double kLeastCover = 0.97;  // of the lit sphere that the samples must speak for
 
 using Color = std::array<double, 3>;
-using Brdf = BrdfFunction;
+using Brdf = ShownBrdf;
 
 struct Frame {
   Vec3 x, y, n;
@@ -132,7 +132,7 @@ void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
 
 Vec3 SphereLight() { return Normalized(Vec3{-0.45, 0.6, 0.75}); }
 
-LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
+LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
   const Vec3 light = SphereLight(), view = {0, 0, 1};
   const std::size_t pixels = PixelIndex(0, size, size);
   LitSphere sphere = {size, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
@@ -155,7 +155,7 @@ LitSphere LightSphere(const BrdfFunction& brdf, const ChannelColor& to_color, st
   return sphere;
 }
 
-LitSphere SkySphere(const BrdfFunction& brdf, const SlopeCoordinates& coordinates, const ChannelColor& to_color,
+LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& coordinates, const ChannelColor& to_color,
                     std::size_t channels, int count, int threads) {
   const SlopeFrame lobe(coordinates);
   const bool grey = channels < 3;
@@ -212,7 +212,7 @@ LitSphere SkySphere(const BrdfFunction& brdf, const SlopeCoordinates& coordinate
 }
 
 LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int size) {
-  const BrdfFunction fitted = [&data](const Vec3& wi, const Vec3& wo, double* f_r) {
+  const ShownBrdf fitted = [&data](const Vec3& wi, const Vec3& wo, double* f_r) {
     data.fitted.Evaluate(wi, wo, f_r);
     return true;
   };

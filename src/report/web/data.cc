@@ -161,7 +161,7 @@ Json ParametersJson(const ReportData& data) {
 
 // A profile's spline: for each piece its left end in u, and for each power the coefficient of each number of the fit.
 Json SplineJson(const Lobe& lobe) {
-  if (FamilyOf(lobe.ndf) != NdfFamily::kProfile) return nullptr;
+  if (FamilyOf(lobe.ndf) != Family::kProfile) return nullptr;
   const ProfileSpline& spline = *GridOf(lobe)->spline();
   Json left = Json::array(), coefficients = Json::array();
   for (std::size_t i = 0; i < spline.intervals(); ++i) {
@@ -196,7 +196,7 @@ Json LobesJson(const Model& model) {
   Json lobes = Json::array();
   for (std::size_t l = 0; l < model.lobes.size(); ++l) {
     const Lobe& lobe = model.lobes[l];
-    lobes.push_back({{"family", FamilyOf(lobe.ndf) == NdfFamily::kBeckmann ? 1 : 0},
+    lobes.push_back({{"family", FamilyOf(lobe.ndf) == Family::kBeckmann ? 1 : 0},
                      {"round", IsRound(lobe.ndf)},
                      {"retro", lobe.direction == LobeDirection::kRetro},
                      {"shapeParameters", ShapeParameters(lobe)},

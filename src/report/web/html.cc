@@ -63,8 +63,8 @@ std::string FigureHtml(const Figure& figure) {
 bool IsLive(const Model& model) {
   constexpr std::size_t kMostLobes = 8;  // of the shader
   const auto known = [](const Lobe& l) {
-    const NdfFamily family = FamilyOf(l.ndf);
-    return family != NdfFamily::kKagiwadaKalaba && family != NdfFamily::kSphericalGaussian;
+    const Family family = FamilyOf(l.ndf);
+    return family != Family::kKagiwadaKalaba && family != Family::kSphericalGaussian;
   };
   return !model.lobes.empty() && model.lobes.size() <= kMostLobes &&
          std::all_of(model.lobes.begin(), model.lobes.end(), known);

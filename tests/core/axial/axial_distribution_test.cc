@@ -11,17 +11,17 @@
 namespace lobefit {
 namespace {
 
-const AxialNdf kAll[] = {{AxialFamily::kKagiwadaKalaba, 0.3},     {AxialFamily::kKagiwadaKalaba, 0.99},
-                         {AxialFamily::kSphericalGaussian, 0.15}, {AxialFamily::kSphericalGaussian, 0.8},
-                         {AxialFamily::kBeckmann, 0.4},           {AxialFamily::kGgx, 0.25}};
+const AxialNdf kAll[] = {{Family::kKagiwadaKalaba, 0.3},     {Family::kKagiwadaKalaba, 0.99},
+                         {Family::kSphericalGaussian, 0.15}, {Family::kSphericalGaussian, 0.8},
+                         {Family::kBeckmann, 0.4},           {Family::kGgx, 0.25}};
 
 TEST(AxialDistribution, GgxAndBeckmannAreThoseOfSlopeSpace) {
   for (const double alpha : {0.05, 0.4, 1.0}) {
     for (const bool beckmann : {false, true}) {
-      const AxialDistribution axial({beckmann ? AxialFamily::kBeckmann : AxialFamily::kGgx, alpha});
-      const SlopeNormalDistribution slopes({beckmann ? SlopeKind::kBeckmann : SlopeKind::kGgx, alpha, alpha, 0, 0, 0});
+      const AxialDistribution axial({beckmann ? Family::kBeckmann : Family::kGgx, alpha});
+      const SlopeNormalDistribution slopes({beckmann ? Family::kBeckmann : Family::kGgx, alpha, alpha, 0, 0, 0});
       const Vec3 wo = FromSpherical(1.0, 0.2), wi = FromSpherical(0.7, 2.9);
-      for (const ShadowingKind kind : {ShadowingKind::kSmithSeparable, ShadowingKind::kSmithHeight}) {
+      for (const Masking kind : {Masking::kSmithSeparable, Masking::kSmithHeight}) {
         double g = 0, g_slopes[kSlopeParameters];
         const double f = MicrofacetSpecular(axial, {kind}, wo, wi, &g);
         EXPECT_NEAR(f, MicrofacetSpecular(slopes, {kind}, wo, wi, g_slopes), 1e-13 * f);
@@ -59,19 +59,18 @@ TEST(AxialDistribution, AlbedoIsBelowOneAndTendsToBeckmann) {
   }
   const Vec3 wo = FromSpherical(1.0, 0);
   const double gaussian =
-      DirectionalAlbedo(AxialDistribution({AxialFamily::kSphericalGaussian, 0.02}), {}, white, wo, nullptr, 1e-6);
-  const double beckmann =
-      DirectionalAlbedo(AxialDistribution({AxialFamily::kBeckmann, 0.02}), {}, white, wo, nullptr, 1e-6);
+      DirectionalAlbedo(AxialDistribution({Family::kSphericalGaussian, 0.02}), {}, white, wo, nullptr, 1e-6);
+  const double beckmann = DirectionalAlbedo(AxialDistribution({Family::kBeckmann, 0.02}), {}, white, wo, nullptr, 1e-6);
   EXPECT_NEAR(gaussian, beckmann, 1e-3);
 }
 
 TEST(AxialDistribution, BelowTheHorizonDIsZeroAndSigmaIsNot) {
-  const AxialDistribution gaussian({AxialFamily::kSphericalGaussian, 1.0});
+  const AxialDistribution gaussian({Family::kSphericalGaussian, 1.0});
   double gradient = 1;
   EXPECT_EQ(gaussian.D(FromSpherical(1.8, 0), &gradient), 0);
   EXPECT_EQ(gradient, 0);
   EXPECT_GT(gaussian.Sigma(FromSpherical(2.8, 0)), 0);
-  EXPECT_GT(AxialDistribution({AxialFamily::kKagiwadaKalaba, 1e-3}).Outline().alpha_x, 0.99);
+  EXPECT_GT(AxialDistribution({Family::kKagiwadaKalaba, 1e-3}).Outline().alpha_x, 0.99);
 }
 
 }  // namespace

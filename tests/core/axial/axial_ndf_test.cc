@@ -18,11 +18,11 @@ namespace {
 std::vector<AxialNdf> Distributions() {
   std::vector<AxialNdf> all;
   for (const double alpha : {1e-3, 0.03, 0.28, 0.32, 1.0, 4.0}) {
-    all.push_back({AxialFamily::kSphericalGaussian, alpha});
-    all.push_back({AxialFamily::kBeckmann, alpha});
-    all.push_back({AxialFamily::kGgx, alpha});
+    all.push_back({Family::kSphericalGaussian, alpha});
+    all.push_back({Family::kBeckmann, alpha});
+    all.push_back({Family::kGgx, alpha});
   }
-  for (const double b : {1e-3, 0.3, 0.49, 0.51, 0.97, 1 - 1e-6}) all.push_back({AxialFamily::kKagiwadaKalaba, b});
+  for (const double b : {1e-3, 0.3, 0.49, 0.51, 0.97, 1 - 1e-6}) all.push_back({Family::kKagiwadaKalaba, b});
   return all;
 }
 
@@ -50,7 +50,7 @@ TEST(AxialNdf, IsNormalisedByProjectedArea) {
     // The factor is that by which the unit-integral form was multiplied.
     const double total =
         OverNormals(ndf, true, [](double) { return 1; }) + OverNormals(ndf, false, [](double) { return 1; });
-    if (ndf.family == AxialFamily::kKagiwadaKalaba || ndf.family == AxialFamily::kSphericalGaussian) {
+    if (ndf.family == Family::kKagiwadaKalaba || ndf.family == Family::kSphericalGaussian) {
       EXPECT_NEAR(AxialNormalisation(ndf), total, 1e-9 * total);
     } else {
       EXPECT_EQ(AxialNormalisation(ndf), 1);
@@ -82,7 +82,7 @@ TEST(AxialNdf, SigmaIsTheIntegralOfD) {
 TEST(AxialNdf, DerivativesByDifferences) {
   for (const AxialNdf& ndf : Distributions()) {
     SCOPED_TRACE(testing::Message() << static_cast<int>(ndf.family) << " " << ndf.parameter);
-    const bool kk = ndf.family == AxialFamily::kKagiwadaKalaba;
+    const bool kk = ndf.family == Family::kKagiwadaKalaba;
     const double step = 1e-5 * (kk ? std::fmin(ndf.parameter, 1 - ndf.parameter) : ndf.parameter);
     const AxialNdf more = {ndf.family, ndf.parameter + step}, less = {ndf.family, ndf.parameter - step};
     const double h = 0.5 * (more.parameter - less.parameter);  // as rounded
@@ -134,10 +134,10 @@ TEST(AxialNdf, GradientOfDEqualsJets) {
     const Jet beckmann = exp(-tan2 / (q * q)) / (kPi * q * q * x * x * x * x);
     const Jet den = q * q * x * x + 1.0 - x * x;
     const Jet ggx = q * q / (kPi * den * den);
-    const std::pair<AxialFamily, Jet> cases[] = {{AxialFamily::kKagiwadaKalaba, kk},
-                                                 {AxialFamily::kSphericalGaussian, sg},
-                                                 {AxialFamily::kBeckmann, beckmann},
-                                                 {AxialFamily::kGgx, ggx}};
+    const std::pair<Family, Jet> cases[] = {{Family::kKagiwadaKalaba, kk},
+                                            {Family::kSphericalGaussian, sg},
+                                            {Family::kBeckmann, beckmann},
+                                            {Family::kGgx, ggx}};
     for (const auto& [family, jet] : cases) {
       if (jet.a < 1e-280) continue;
       AxialGradient g;
@@ -177,13 +177,13 @@ TEST(AxialNdf, GrazingNormalsAreFinite) {
 TEST(AxialNdf, FamiliesMeetInTheirLimits) {
   // The spherical Gaussian tends to Beckmann for small alpha; both whole-sphere families to the isotropic one, sigma =
   // 1, D = 1 / pi.
-  EXPECT_NEAR(AxialD({AxialFamily::kSphericalGaussian, 0.01}, FromSpherical(0.01, 0)) /
-                  AxialD({AxialFamily::kBeckmann, 0.01}, FromSpherical(0.01, 0)),
+  EXPECT_NEAR(AxialD({Family::kSphericalGaussian, 0.01}, FromSpherical(0.01, 0)) /
+                  AxialD({Family::kBeckmann, 0.01}, FromSpherical(0.01, 0)),
               1, 1e-3);
   const Vec3 m = FromSpherical(2, 1);
-  EXPECT_NEAR(AxialD({AxialFamily::kSphericalGaussian, 1e4}, m), kInvPi, 1e-7);
-  EXPECT_NEAR(AxialD({AxialFamily::kKagiwadaKalaba, 1e-8}, m), kInvPi, 1e-7);
-  EXPECT_NEAR(AxialSigma({AxialFamily::kKagiwadaKalaba, 1e-8}, -0.7), 1, 1e-7);
+  EXPECT_NEAR(AxialD({Family::kSphericalGaussian, 1e4}, m), kInvPi, 1e-7);
+  EXPECT_NEAR(AxialD({Family::kKagiwadaKalaba, 1e-8}, m), kInvPi, 1e-7);
+  EXPECT_NEAR(AxialSigma({Family::kKagiwadaKalaba, 1e-8}, -0.7), 1, 1e-7);
 }
 
 }  // namespace

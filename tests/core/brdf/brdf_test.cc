@@ -67,7 +67,7 @@ TEST(Reflectance, IsTheSumOfItsParts) {
     const Vec3 wi = random.Upper(), wo = random.Upper();
     double f_r = 0;
     reflectance.Evaluate(wi, wo, &f_r);
-    const double expected = EllipsoidSchlickBrdf(e, f0, wo, wi, G1Kind::kClamped) + LambertBrdf(albedo, wo, wi);
+    const double expected = EllipsoidSchlickBrdf(e, f0, wo, wi, Masking::kSmithSeparable) + LambertBrdf(albedo, wo, wi);
     EXPECT_NEAR(f_r, expected, 1e-10 * expected);
   }
 }

@@ -142,7 +142,7 @@ TEST(Coat, IsReciprocalAndMakesNoEnergy) {
   ShapeGenerator random(403);
   for (const bool refracted : {false, true}) {
     const Coat coat = {0.15, 1.5, 0.1, refracted};
-    const SlopeDistribution base = {SlopeKind::kGgx, 0.3, 0.2, 0.2, 0, 0};
+    const SlopeDistribution base = {Family::kGgx, 0.3, 0.2, 0.2, 0, 0};
     const auto f = [&](const Vec3& wi, const Vec3& wo) {
       const CoatFactors c = EvaluateCoat(coat, wi, wo);
       return c.lobe + c.through * SpecularWithDirections(base, 1, c.inside_i, c.inside_o).value;
@@ -194,7 +194,7 @@ TEST(Coat, GradientsAreDerivatives) {
 TEST(SpecularWithDirections, IsTheMicrofacetLobeAndMovesWithTheDirections) {
   ShapeGenerator random(405);
   for (int i = 0; i < 100; ++i) {
-    const SlopeDistribution slopes = {SlopeKind::kGgx, 0.4, 0.3, 0.2, 0.1, -0.2};
+    const SlopeDistribution slopes = {Family::kGgx, 0.4, 0.3, 0.2, 0.1, -0.2};
     const Vec3 wi = Upper(&random), wo = Upper(&random);
     if (std::max(wi.z, wo.z) > 0.95) continue;  // near the normal G1 is cut and not cut within a step
     const DirectionalSpecular f = SpecularWithDirections(slopes, 0.3, wi, wo);
@@ -217,7 +217,7 @@ TEST(SpecularWithDirections, IsTheMicrofacetLobeAndMovesWithTheDirections) {
 }
 
 TEST(Mirrored, RetroLobePeaksBackwards) {
-  const SlopeNormalDistribution lobe({SlopeKind::kGgx, 0.1, 0.1, 0, 0, 0});
+  const SlopeNormalDistribution lobe({Family::kGgx, 0.1, 0.1, 0, 0, 0});
   const Vec3 wi = Normalized(Vec3{0.5, 0.2, 1});
   const double back = MicrofacetSpecular(lobe, {}, wi, Mirrored(wi));
   ShapeGenerator random(406);

@@ -40,9 +40,9 @@ SlopeCoordinates ShapeFor(Ndf ndf) {
 std::vector<double> ProfileFor(const Lobe& lobe) {
   std::vector<double> profile = {3.1};
   const std::size_t size = ShapeParameters(lobe) - kEllipseParameters;
-  for (std::size_t k = 0; FamilyOf(lobe.ndf) == NdfFamily::kProfile && k < size; ++k)
+  for (std::size_t k = 0; FamilyOf(lobe.ndf) == Family::kProfile && k < size; ++k)
     profile.resize(k + 1, k % 2 == 0 ? 0.4 : -0.3);
-  if (FamilyOf(lobe.ndf) == NdfFamily::kProfile) profile[0] = 0.7;
+  if (FamilyOf(lobe.ndf) == Family::kProfile) profile[0] = 0.7;
   return profile;
 }
 

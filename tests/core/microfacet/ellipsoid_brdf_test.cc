@@ -17,7 +17,7 @@ TEST(BrdfTable, EllipsoidConductor) {
     double gradient[7];
     BrdfFactors factors;
     const double value = EllipsoidConductorBrdf(EllipsoidOfRow(table, row), {table(row, "eta"), table(row, "k")}, wo,
-                                                wi, G1Kind::kClamped, gradient, &factors);
+                                                wi, Masking::kSmithSeparable, gradient, &factors);
     const double cond = table(row, "cond");
     ExpectValue(value, table(row, "fr"), cond, row);
     ExpectGradient(gradient, table, row, "dfr_d", names, cond);
@@ -58,7 +58,7 @@ TEST(BrdfJets, EllipsoidConductor) {
     Vec3 wo, wi;
     RandomPair(&random, e, &wo, &wi);
     const double eta = random.LogUniform(0.05, 5), k = random.LogUniform(0.01, 10);
-    for (const G1Kind kind : {G1Kind::kClamped, G1Kind::kUnclamped}) {
+    for (const Masking kind : {Masking::kSmithSeparable, Masking::kSmithUnclamped}) {
       double gradient[7];
       BrdfDirectionGradient direction;
       const double value = EllipsoidConductorBrdf(e, {eta, k}, wo, wi, kind, gradient, nullptr, &direction);
@@ -66,7 +66,7 @@ TEST(BrdfJets, EllipsoidConductor) {
                         Jet(e.theta_z, 4), Jet(eta, 5),       Jet(k, 6)};
       const Vec3T<Jet> jo = {Jet(wo.x, 7), Jet(wo.y, 8), Jet(wo.z, 9)},
                        ji = {Jet(wi.x, 10), Jet(wi.y, 11), Jet(wi.z, 12)};
-      const Jet jet = EllipsoidConductorBrdfFormula(p, jo, ji, kind == G1Kind::kClamped);
+      const Jet jet = EllipsoidConductorBrdfFormula(p, jo, ji, kind == Masking::kSmithSeparable);
       EXPECT_NEAR(value, jet.a, 1e-10 * value);
       ExpectSameGradient(gradient, jet.v.data(), 7, 1e-10);
       ExpectSameTangent(wo, direction.wo, jet.v.data() + 7);
@@ -83,12 +83,12 @@ TEST(BrdfLaws, ReciprocalInValueAndGradient) {
     Vec3 wo, wi;
     RandomPair(&random, e, &wo, &wi);
     double a[7], b[7];
-    EXPECT_EQ(EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, G1Kind::kClamped, a),
-              EllipsoidConductorBrdf(e, {0.2, 3}, wi, wo, G1Kind::kClamped, b));
+    EXPECT_EQ(EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, Masking::kSmithSeparable, a),
+              EllipsoidConductorBrdf(e, {0.2, 3}, wi, wo, Masking::kSmithSeparable, b));
     for (int k = 0; k < 7; ++k) EXPECT_EQ(a[k], b[k]);
-    EXPECT_GT(EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, G1Kind::kClamped), 0);
-    EXPECT_GE(EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, G1Kind::kUnclamped),
-              EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, G1Kind::kClamped));
+    EXPECT_GT(EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, Masking::kSmithSeparable), 0);
+    EXPECT_GE(EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, Masking::kSmithUnclamped),
+              EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, Masking::kSmithSeparable));
   }
 }
 
@@ -101,10 +101,11 @@ TEST(BrdfLaws, SchlickIsLinearInF0AndSharesTheSpecularFactor) {
     double gradient[6], conductor[7];
     BrdfFactors factors, conductor_factors;
     BrdfDirectionGradient direction;
-    const double f = EllipsoidSchlickBrdf(e, 0.3, wo, wi, G1Kind::kClamped, gradient, &factors, &direction);
-    const double f_zero = EllipsoidSchlickBrdf(e, 0, wo, wi, G1Kind::kClamped);
+    const double f = EllipsoidSchlickBrdf(e, 0.3, wo, wi, Masking::kSmithSeparable, gradient, &factors, &direction);
+    const double f_zero = EllipsoidSchlickBrdf(e, 0, wo, wi, Masking::kSmithSeparable);
     EXPECT_NEAR(f, f_zero + 0.3 * gradient[5], 1e-14 * f);
-    const double g = EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, G1Kind::kClamped, conductor, &conductor_factors);
+    const double g =
+        EllipsoidConductorBrdf(e, {0.2, 3}, wo, wi, Masking::kSmithSeparable, conductor, &conductor_factors);
     EXPECT_NEAR(f / factors.F, g / conductor_factors.F, 1e-14 * f / factors.F);
     for (int k = 0; k < 5; ++k) {
       EXPECT_NEAR(gradient[k] / factors.F, conductor[k] / conductor_factors.F,
@@ -113,10 +114,11 @@ TEST(BrdfLaws, SchlickIsLinearInF0AndSharesTheSpecularFactor) {
     // Direction gradient against a central difference along a tangent (step 1e-5: error 1e-10 of the curvature).
     const Vec3 tangent = Normalized(Cross(wo, Vec3{0.3, -0.5, 0.8}));
     const double h = 1e-5 * e.alpha_x * e.alpha_y;
-    const double difference = (EllipsoidSchlickBrdf(e, 0.3, Normalized(wo + h * tangent), wi, G1Kind::kUnclamped) -
-                               EllipsoidSchlickBrdf(e, 0.3, Normalized(wo - h * tangent), wi, G1Kind::kUnclamped)) /
-                              (2 * h);
-    EllipsoidSchlickBrdf(e, 0.3, wo, wi, G1Kind::kUnclamped, nullptr, nullptr, &direction);
+    const double difference =
+        (EllipsoidSchlickBrdf(e, 0.3, Normalized(wo + h * tangent), wi, Masking::kSmithUnclamped) -
+         EllipsoidSchlickBrdf(e, 0.3, Normalized(wo - h * tangent), wi, Masking::kSmithUnclamped)) /
+        (2 * h);
+    EllipsoidSchlickBrdf(e, 0.3, wo, wi, Masking::kSmithUnclamped, nullptr, nullptr, &direction);
     EXPECT_NEAR(Dot(direction.wo, tangent), difference, 1e-5 * (Norm(direction.wo) + f / e.alpha_y)) << i;
   }
 }
@@ -125,9 +127,9 @@ TEST(BrdfLaws, NothingBelowTheHorizon) {
   const Vec3 up = Normalized(Vec3{0.2, 0.1, 1}), level = {1, 0, 0}, down = {0, 0.6, -0.8};
   for (const Vec3& w : {level, down}) {
     double gradient[7] = {1, 1, 1, 1, 1, 1, 1};
-    EXPECT_EQ(EllipsoidConductorBrdf({}, {1, 1}, up, w, G1Kind::kClamped, gradient), 0);
+    EXPECT_EQ(EllipsoidConductorBrdf({}, {1, 1}, up, w, Masking::kSmithSeparable, gradient), 0);
     for (const double d : gradient) EXPECT_EQ(d, 0);
-    EXPECT_EQ(EllipsoidSchlickBrdf({}, 0.5, w, up, G1Kind::kClamped, gradient), 0);
+    EXPECT_EQ(EllipsoidSchlickBrdf({}, 0.5, w, up, Masking::kSmithSeparable, gradient), 0);
     EXPECT_EQ(LambertBrdf(0.5, up, w), 0);
   }
   double derivative;

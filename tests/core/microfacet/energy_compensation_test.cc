@@ -14,10 +14,10 @@ const FresnelOfCosine kMirror = [](double) { return 1.0; };
 // [Heitz eq 103] for F = 1: what the two parts send up is everything that came in.
 TEST(EnergyCompensation, ClosesTheWhiteFurnace) {
   const EllipsoidDistribution distribution({0.6, 0.4, 0, 0, 0.5});
-  const EnergyCompensation compensation(distribution, {ShadowingKind::kSmithHeight}, kMirror, 1e-6);
+  const EnergyCompensation compensation(distribution, {Masking::kSmithHeight}, kMirror, 1e-6);
   EXPECT_GT(compensation.mean_missing(), 0.01);
   const Vec3 wo = FromSpherical(0.8, 0.3);
-  const double first = DirectionalAlbedo(distribution, {ShadowingKind::kSmithHeight}, kMirror, wo, nullptr, 1e-6);
+  const double first = DirectionalAlbedo(distribution, {Masking::kSmithHeight}, kMirror, wo, nullptr, 1e-6);
   // Another rule than the one that made the average.
   const QuadratureRule rule = GaussLegendre(14);
   double multiple = 0;

@@ -38,9 +38,9 @@ Vec3 AtAngle(double theta) { return FromSpherical(theta, 0); }
 // Values of an independent quadrature (MATH.md section 4), alpha 0.5 at theta 0.3, 1 and 1.4; the leaning lobe seen
 // from azimuth 0.6.
 TEST(WeakFurnace, KnownValues) {
-  const SlopeNormalDistribution ggx({SlopeKind::kGgx, 0.5, 0.5, 0, 0, 0}),
-      beckmann({SlopeKind::kBeckmann, 0.5, 0.5, 0, 0, 0});
-  const SlopeNormalDistribution leaning({SlopeKind::kGgx, 0.3, 0.4, 0.2, 0.4, -0.1});
+  const SlopeNormalDistribution ggx({Family::kGgx, 0.5, 0.5, 0, 0, 0}),
+      beckmann({Family::kBeckmann, 0.5, 0.5, 0, 0, 0});
+  const SlopeNormalDistribution leaning({Family::kGgx, 0.3, 0.4, 0.2, 0.4, -0.1});
   const double theta[3] = {0.3, 1.0, 1.4};
   const double hemisphere[3] = {0.80137, 0.83325, 0.92534}, implicit[3] = {0.955, 0.544, 0.240},
                kelemen[3] = {1.113, 1.067, 0.755};
@@ -48,10 +48,10 @@ TEST(WeakFurnace, KnownValues) {
   for (int i = 0; i < 3; ++i) {
     const Vec3 wo = AtAngle(theta[i]);
     EXPECT_NEAR(WeakFurnaceHemisphere(ggx, {}, wo), hemisphere[i], 6e-6);
-    EXPECT_NEAR(WeakFurnaceSphere(beckmann, {ShadowingKind::kImplicit}, wo), implicit[i], 6e-4);
-    EXPECT_NEAR(WeakFurnaceSphere(beckmann, {ShadowingKind::kKelemen}, wo), kelemen[i], 6e-4);
-    EXPECT_NEAR(WeakFurnaceSphere(leaning, {ShadowingKind::kVCavity}, FromSpherical(theta[i], 0.6)), v_cavity[i], 6e-5);
-    EXPECT_NEAR(WeakFurnaceSphere(ggx, {ShadowingKind::kVCavity}, wo), 1, 1e-8);  // the kink at G1 = 1 costs digits
+    EXPECT_NEAR(WeakFurnaceSphere(beckmann, {Masking::kImplicit}, wo), implicit[i], 6e-4);
+    EXPECT_NEAR(WeakFurnaceSphere(beckmann, {Masking::kKelemen}, wo), kelemen[i], 6e-4);
+    EXPECT_NEAR(WeakFurnaceSphere(leaning, {Masking::kVCavity}, FromSpherical(theta[i], 0.6)), v_cavity[i], 6e-5);
+    EXPECT_NEAR(WeakFurnaceSphere(ggx, {Masking::kVCavity}, wo), 1, 1e-8);  // the kink at G1 = 1 costs digits
   }
 }
 
@@ -67,7 +67,7 @@ TEST(WeakFurnace, SmithIsExactOnTheSphere) {
     EXPECT_NEAR(no_fresnel, 1, 1e-9);
     const double W = WeakFurnaceSphere(distribution, {}, wo);
     EXPECT_LE(W, 1);
-    EXPECT_EQ(WeakFurnaceSphere(distribution, {ShadowingKind::kSmithSeparable, false}, wo), 1);
+    EXPECT_EQ(WeakFurnaceSphere(distribution, {Masking::kSmithUnclamped}, wo), 1);
     const double up = WeakFurnaceHemisphere(distribution, {}, wo),
                  diffuse_up = WeakFurnaceDiffuseHemisphere(distribution, {}, wo);
     EXPECT_GT(up, 0);
@@ -87,7 +87,7 @@ TEST(EnergyMissing, GrowsWithRoughnessAndFallsWithCorrelation) {
     EXPECT_LT(missing, alpha == 1e-3 ? 1e-4 : 1.0);
     previous = missing;
     double last = missing;
-    for (const ShadowingKind kind : {ShadowingKind::kSmithHeight, ShadowingKind::kSmithHeightDirection}) {
+    for (const Masking kind : {Masking::kSmithHeight, Masking::kSmithHeightDirection}) {
       const double less = EnergyMissing(distribution, {kind}, AtAngle(0.7), nullptr, 1e-9);
       EXPECT_LT(less, last);
       EXPECT_GE(less, 0);
@@ -121,13 +121,12 @@ TEST(Energy, Gradients) {
   const FresnelOfCosine fresnel = [](double c) { return FresnelConductor(c, {0.9, 2.5}); };
   // Centred, without the mean slope: nothing is clamped, no kink slows the quadrature.
   ExpectGradientOf(
-      SlopeDistribution{SlopeKind::kGgx, 0.35, 0.5, 0.2, 0, 0},
+      SlopeDistribution{Family::kGgx, 0.35, 0.5, 0.2, 0, 0},
       [&](const SlopeDistribution& t, double* gradient) {
-        return DirectionalAlbedo(SlopeNormalDistribution(t), {ShadowingKind::kSmithHeight}, fresnel, wo, gradient,
-                                 1e-8);
+        return DirectionalAlbedo(SlopeNormalDistribution(t), {Masking::kSmithHeight}, fresnel, wo, gradient, 1e-8);
       },
       3);
-  for (const SlopeKind kind : {SlopeKind::kGgx, SlopeKind::kBeckmann}) {
+  for (const Family kind : {Family::kGgx, Family::kBeckmann}) {
     const SlopeDistribution s = {kind, 0.35, 0.5, 0.2, 0.15, -0.1};
     ExpectGradientOf(s, [&](const SlopeDistribution& t, double* gradient) {
       return MeanVisibleFresnel(SlopeNormalDistribution(t), fresnel, wo, gradient, 1e-8);
@@ -144,7 +143,7 @@ TEST(DirectionalAlbedo, IsTheIntegralOfTheBrdf) {
   const EllipsoidDistribution distribution({0.5, 0.35, 0, 0, 0.4});
   const FresnelOfCosine fresnel = [](double c) { return FresnelSchlick(c, 0.6); };
   const Vec3 wo = FromSpherical(0.7, 0.3);
-  for (const ShadowingKind kind : {ShadowingKind::kSmithSeparable, ShadowingKind::kSmithHeight}) {
+  for (const Masking kind : {Masking::kSmithSeparable, Masking::kSmithHeight}) {
     double sum = 0;
     const int azimuths = 240;
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {

@@ -12,10 +12,9 @@
 namespace lobefit {
 namespace {
 
-const ShadowingKind kAllKinds[] = {ShadowingKind::kSmithSeparable, ShadowingKind::kSmithHeight,
-                                   ShadowingKind::kSmithDirection, ShadowingKind::kSmithHeightDirection,
-                                   ShadowingKind::kVCavity,        ShadowingKind::kImplicit,
-                                   ShadowingKind::kSchlickSmith,   ShadowingKind::kKelemen};
+const Masking kAllKinds[] = {Masking::kSmithSeparable, Masking::kSmithUnclamped,       Masking::kSmithHeight,
+                             Masking::kSmithDirection, Masking::kSmithHeightDirection, Masking::kVCavity,
+                             Masking::kImplicit,       Masking::kSchlickSmith,         Masking::kKelemen};
 
 // With separable masking the general BRDF is [Walter eq 4-6], clamped and not, value and gradient.
 TEST(Microfacet, EqualsTheEllipsoidBrdf) {
@@ -24,12 +23,12 @@ TEST(Microfacet, EqualsTheEllipsoidBrdf) {
     const Ellipsoid e = random.Moderate();
     const EllipsoidDistribution distribution(e);
     const Vec3 wo = random.Upper(), wi = random.Upper();
-    for (const G1Kind kind : {G1Kind::kClamped, G1Kind::kUnclamped}) {
+    for (const Masking kind : {Masking::kSmithSeparable, Masking::kSmithUnclamped}) {
       double expected[6], gradient[5], cos_d;
       BrdfFactors factors;
       EllipsoidSchlickBrdf(e, 0.5, wo, wi, kind, expected, &factors);
       const double f = EllipsoidSchlickBrdf(e, 0.5, wo, wi, kind) / factors.F;
-      const Shadowing shadowing = {ShadowingKind::kSmithSeparable, kind == G1Kind::kClamped};
+      const Shadowing shadowing = {kind};
       EXPECT_NEAR(MicrofacetSpecular(distribution, shadowing, wo, wi, gradient, &cos_d), f, 1e-12 * f);
       for (double& d : expected) d /= factors.F;
       ExpectSameGradient(gradient, expected, 5, 1e-9, f);
@@ -41,12 +40,12 @@ TEST(Microfacet, EqualsTheEllipsoidBrdf) {
 TEST(Microfacet, ReciprocalForEveryMasking) {
   ShapeGenerator random(82);
   for (int i = 0; i < 200; ++i) {
-    const SlopeNormalDistribution distribution({i % 2 == 0 ? SlopeKind::kGgx : SlopeKind::kBeckmann,
+    const SlopeNormalDistribution distribution({i % 2 == 0 ? Family::kGgx : Family::kBeckmann,
                                                 random.LogUniform(0.05, 1), random.LogUniform(0.05, 1), 0.3, 0.2,
                                                 -0.1});
     const Vec3 wo = random.Upper(), wi = random.Upper();
-    for (const ShadowingKind kind : kAllKinds) {
-      const Shadowing shadowing = {kind, true, 0.3};
+    for (const Masking kind : kAllKinds) {
+      const Shadowing shadowing = {kind, 0.3};
       double a[5], b[5];
       EXPECT_EQ(MicrofacetSpecular(distribution, shadowing, wo, wi, a),
                 MicrofacetSpecular(distribution, shadowing, wi, wo, b));
@@ -60,9 +59,9 @@ TEST(Microfacet, ReciprocalForEveryMasking) {
 
 TEST(Microfacet, GradientsOfEveryMasking) {
   const Vec3 wo = FromSpherical(0.9, 0.3), wi = FromSpherical(0.6, 2.5);
-  const SlopeDistribution s = {SlopeKind::kBeckmann, 0.4, 0.6, 0.2, 0.1, -0.2};
-  for (const ShadowingKind kind : kAllKinds) {
-    const Shadowing shadowing = {kind, true, 0.3};
+  const SlopeDistribution s = {Family::kBeckmann, 0.4, 0.6, 0.2, 0.1, -0.2};
+  for (const Masking kind : kAllKinds) {
+    const Shadowing shadowing = {kind, 0.3};
     double gradient[5];
     MicrofacetSpecular(SlopeNormalDistribution(s), shadowing, wo, wi, gradient);
     for (int k = 0; k < 5; ++k) {
@@ -118,9 +117,9 @@ TEST(DiffuseMicrofacets, IntegrateToTheFurnace) {
 }
 
 TEST(DiffuseMicrofacets, Gradient) {
-  const SlopeDistribution s = {SlopeKind::kGgx, 0.4, 0.6, 0.2, 0.1, -0.2};
+  const SlopeDistribution s = {Family::kGgx, 0.4, 0.6, 0.2, 0.1, -0.2};
   const Vec3 wo = FromSpherical(0.9, 0.3), wi = FromSpherical(0.6, 2.5);
-  const Shadowing shadowing = {ShadowingKind::kSmithHeight};
+  const Shadowing shadowing = {Masking::kSmithHeight};
   double gradient[5];
   const double f = DiffuseMicrofacetBrdf(SlopeNormalDistribution(s), shadowing, wo, wi, gradient);
   EXPECT_NEAR(f, DiffuseMicrofacetBrdf(SlopeNormalDistribution(s), shadowing, wo, wi), 1e-9 * f);

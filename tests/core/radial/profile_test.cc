@@ -39,7 +39,7 @@ std::vector<std::vector<double>> Coefficients() {
 }
 
 SlopeDistribution RandomSlopes(ShapeGenerator* random) {
-  return {SlopeKind::kGgx,
+  return {Family::kGgx,
           random->LogUniform(0.02, 1),
           random->LogUniform(0.02, 1),
           random->Uniform(-0.8, 0.8),
@@ -254,7 +254,7 @@ void ExpectGradients(const Make& make, const std::vector<double>& p, unsigned se
   }
 }
 
-SlopeDistribution SlopesOf(const std::vector<double>& p) { return {SlopeKind::kGgx, p[0], p[1], p[2], p[3], p[4]}; }
+SlopeDistribution SlopesOf(const std::vector<double>& p) { return {Family::kGgx, p[0], p[1], p[2], p[3], p[4]}; }
 
 TEST(ShapeInvariantDistribution, GradientsAreDerivatives) {
   unsigned seed = 310;
@@ -305,7 +305,7 @@ TEST(StudentLaws, TwoIsGgxToTheBit) {
 
 // D(gamma) differs from Beckmann's by t^2 / (2 gamma) - t / gamma in the logarithm.
 TEST(StudentLaws, TendsToBeckmann) {
-  SlopeDistribution slopes = {SlopeKind::kBeckmann, 0.3, 0.2, 0.4, 0.1, -0.2};
+  SlopeDistribution slopes = {Family::kBeckmann, 0.3, 0.2, 0.4, 0.1, -0.2};
   ShapeGenerator random(304);
   for (int i = 0; i < 100; ++i) {
     const Vec3 m = Normalized(Vec3{random.Uniform(-0.8, 0.8), random.Uniform(-0.8, 0.8), 1});
@@ -318,7 +318,7 @@ TEST(StudentLaws, TendsToBeckmann) {
 }
 
 TEST(StudentDistribution, RefusesWhatHasNoMean) {
-  const SlopeDistribution slopes = {SlopeKind::kGgx, 0.3, 0.2, 0.4, 0.1, -0.2};
+  const SlopeDistribution slopes = {Family::kGgx, 0.3, 0.2, 0.4, 0.1, -0.2};
   EXPECT_THROW(StudentDistribution(PowerLaw(1.5), slopes), InputError);
   EXPECT_THROW(StudentDistribution(PowerLaw(NAN), slopes), InputError);
 }

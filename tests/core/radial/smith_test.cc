@@ -17,7 +17,7 @@ namespace {
 const std::vector<std::string> kSlopeNames = {"alpha_x", "alpha_y", "r", "slope_x", "slope_y"};
 
 SlopeDistribution SlopesOfRow(const ReferenceTable& table, std::size_t row) {
-  const SlopeKind kind = table.Text(row, "kind") == "ggx" ? SlopeKind::kGgx : SlopeKind::kBeckmann;
+  const Family kind = table.Text(row, "kind") == "ggx" ? Family::kGgx : Family::kBeckmann;
   return {kind,
           table(row, "alpha_x"),
           table(row, "alpha_y"),
@@ -26,7 +26,7 @@ SlopeDistribution SlopesOfRow(const ReferenceTable& table, std::size_t row) {
           table(row, "slope_y")};
 }
 
-SlopeDistribution RandomSlopes(ShapeGenerator* random, SlopeKind kind) {
+SlopeDistribution RandomSlopes(ShapeGenerator* random, Family kind) {
   return {kind,
           random->LogUniform(0.05, 1.5),
           random->LogUniform(0.05, 1.5),
@@ -66,14 +66,14 @@ TEST(SlopeTables, SmithLambda) {
     bool clamped;
     ExpectValue(SmithG1Clamped(s, u, gradient, &clamped), table(row, "G1_clamped"), cond_sigma, row);
     EXPECT_EQ(clamped, table(row, "clamped") == 1) << row;
-    EXPECT_NEAR(SmithLambdaOfA(s.kind, p.a), SmithLambda(s, u), 1e-13 * std::abs(SmithLambda(s, u))) << row;
+    EXPECT_NEAR(SmithLambdaOfA(s.family, p.a), SmithLambda(s, u), 1e-13 * std::abs(SmithLambda(s, u))) << row;
   }
 }
 
 TEST(SlopeTables, G2) {
   const ReferenceTable table("g2");
-  const SmithG2Kind kinds[4] = {SmithG2Kind::kSeparable, SmithG2Kind::kHeight, SmithG2Kind::kDirection,
-                                SmithG2Kind::kHeightDirection};
+  const Masking kinds[4] = {Masking::kSmithSeparable, Masking::kSmithHeight, Masking::kSmithDirection,
+                            Masking::kSmithHeightDirection};
   const std::string names[4] = {"G2_separable", "G2_height", "G2_direction", "G2_height_direction"};
   for (std::size_t row = 0; row < table.size(); ++row) {
     const SlopeDistribution s = SlopesOfRow(table, row);
@@ -117,7 +117,7 @@ TEST(SlopeJets, DistributionAndLambda) {
   using Jet = ceres::Jet<double, 8>;
   ShapeGenerator random(41);
   for (int i = 0; i < 1000; ++i) {
-    const SlopeDistribution s = RandomSlopes(&random, i % 2 == 0 ? SlopeKind::kGgx : SlopeKind::kBeckmann);
+    const SlopeDistribution s = RandomSlopes(&random, i % 2 == 0 ? Family::kGgx : Family::kBeckmann);
     const double values[5] = {s.alpha_x, s.alpha_y, s.r, s.slope_x, s.slope_y};
     Jet p[5];
     for (int k = 0; k < 5; ++k) p[k] = Jet(values[k], k);
@@ -128,15 +128,15 @@ TEST(SlopeJets, DistributionAndLambda) {
     Vec3 dw;
     const double D = SlopeDistributionD(s, m, gradient, &dw);
     gradient[5] = dw.x, gradient[6] = dw.y, gradient[7] = dw.z;
-    const Jet jet = SlopeDistributionDFormula(s.kind, p, Vec3T<Jet>{Jet(m.x, 5), Jet(m.y, 6), Jet(m.z, 7)});
+    const Jet jet = SlopeDistributionDFormula(s.family, p, Vec3T<Jet>{Jet(m.x, 5), Jet(m.y, 6), Jet(m.z, 7)});
     EXPECT_NEAR(D, jet.a, 1e-10 * D);
     ExpectSameGradient(gradient, jet.v.data(), 8, 1e-10);
     EXPECT_EQ(D, SlopeDistributionD(s, m));
 
     const double a = random.Uniform(0, 1) < 0.5 ? random.Uniform(0.1, 3) : -random.Uniform(0.1, 3);
     double dLambda;
-    const double Lambda = SmithLambdaOfA(s.kind, a, &dLambda);
-    const Jet jet_Lambda = SmithLambdaFormula(s.kind, Jet(a, 0));
+    const double Lambda = SmithLambdaOfA(s.family, a, &dLambda);
+    const Jet jet_Lambda = SmithLambdaFormula(s.family, Jet(a, 0));
     EXPECT_NEAR(Lambda, jet_Lambda.a, 1e-10 * std::abs(Lambda) + 1e-15);
     EXPECT_NEAR(dLambda, jet_Lambda.v[0], 1e-10 * std::abs(dLambda) + 1e-15);
   }
@@ -147,7 +147,7 @@ TEST(SlopeJets, DistributionAndLambda) {
 TEST(SmithSigma, DirectionGradient) {
   ShapeGenerator random(42);
   for (int i = 0; i < 300; ++i) {
-    const SlopeDistribution s = RandomSlopes(&random, i % 2 == 0 ? SlopeKind::kGgx : SlopeKind::kBeckmann);
+    const SlopeDistribution s = RandomSlopes(&random, i % 2 == 0 ? Family::kGgx : Family::kBeckmann);
     const Vec3 u = Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)});
     Vec3 du;
     SmithSigma(s, u, nullptr, &du);
@@ -164,14 +164,14 @@ TEST(SlopeLaws, GgxIsTheEllipsoid) {
   ShapeGenerator random(43);
   for (int i = 0; i < 500; ++i) {
     const Ellipsoid e = random.Moderate();
-    const SlopeDistribution s = SlopesFromOffCenter(SlopeKind::kGgx, OffCenterFromEllipsoid(e));
+    const SlopeDistribution s = SlopesFromOffCenter(Family::kGgx, OffCenterFromEllipsoid(e));
     const Vec3 m = random.NearLobe(e), u = random.Sphere();
     EXPECT_NEAR(SlopeDistributionD(s, m), EllipsoidD(e, m), 1e-9 * EllipsoidD(e, m));
     EXPECT_NEAR(SmithSigma(s, u), EllipsoidSigma(e, u), 1e-9 * EllipsoidSigma(e, u));
     double jacobian[25];
     const OffCenter o = OffCenterFromSlopes(s, jacobian), direct = OffCenterFromEllipsoid(e);
     EXPECT_NEAR(o.q12, direct.q12, 1e-14);
-    const SlopeDistribution moved = {s.kind, s.alpha_x + 1e-6, s.alpha_y, s.r + 1e-6, s.slope_x, s.slope_y};
+    const SlopeDistribution moved = {s.family, s.alpha_x + 1e-6, s.alpha_y, s.r + 1e-6, s.slope_x, s.slope_y};
     EXPECT_NEAR(OffCenterFromSlopes(moved).q12 - o.q12, 1e-6 * (jacobian[15] + jacobian[17]), 1e-11);
   }
 }
@@ -182,7 +182,7 @@ TEST(SlopeLaws, NormalisedAndProjected) {
   ShapeGenerator random(44);
   static const QuadratureRule rule = GaussLegendre(200);
   for (int i = 0; i < 12; ++i) {
-    const SlopeDistribution s = RandomSlopes(&random, i % 2 == 0 ? SlopeKind::kGgx : SlopeKind::kBeckmann);
+    const SlopeDistribution s = RandomSlopes(&random, i % 2 == 0 ? Family::kGgx : Family::kBeckmann);
     const Vec3 u = Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-0.3, 1)});
     const double root = std::sqrt(1 - s.r * s.r);
     double sum = 0, sigma = 0, dsum[5] = {};
@@ -213,10 +213,10 @@ TEST(SlopeLaws, G2Orderings) {
   for (int i = 0; i < 5000; ++i) {
     const double Lambda_o = i % 10 == 0 ? 0 : random.LogUniform(1e-6, 1e3), Lambda_i = random.LogUniform(1e-6, 1e3);
     const double lambda = VanGinnekenLambda(random.Uniform(0, kPi));
-    const double separable = SmithG2(SmithG2Kind::kSeparable, Lambda_o, Lambda_i, lambda);
-    const double height = SmithG2(SmithG2Kind::kHeight, Lambda_o, Lambda_i, lambda);
-    const double direction = SmithG2(SmithG2Kind::kDirection, Lambda_o, Lambda_i, lambda);
-    const double both = SmithG2(SmithG2Kind::kHeightDirection, Lambda_o, Lambda_i, lambda);
+    const double separable = SmithG2(Masking::kSmithSeparable, Lambda_o, Lambda_i, lambda);
+    const double height = SmithG2(Masking::kSmithHeight, Lambda_o, Lambda_i, lambda);
+    const double direction = SmithG2(Masking::kSmithDirection, Lambda_o, Lambda_i, lambda);
+    const double both = SmithG2(Masking::kSmithHeightDirection, Lambda_o, Lambda_i, lambda);
     const double least = std::fmin(1 / (1 + Lambda_o), 1 / (1 + Lambda_i));
     const double slack = 1 + 1e-15;
     EXPECT_LE(separable, height * slack);
@@ -224,8 +224,8 @@ TEST(SlopeLaws, G2Orderings) {
     EXPECT_LE(both, least * slack);
     EXPECT_LE(separable, direction * slack);
     EXPECT_LE(direction, least * slack);
-    for (const SmithG2Kind kind :
-         {SmithG2Kind::kSeparable, SmithG2Kind::kHeight, SmithG2Kind::kDirection, SmithG2Kind::kHeightDirection}) {
+    for (const Masking kind :
+         {Masking::kSmithSeparable, Masking::kSmithHeight, Masking::kSmithDirection, Masking::kSmithHeightDirection}) {
       SmithG2Gradient a, b;
       EXPECT_EQ(SmithG2(kind, Lambda_o, Lambda_i, lambda, &a), SmithG2(kind, Lambda_i, Lambda_o, lambda, &b));
       EXPECT_EQ(a.dLambda_o, b.dLambda_i);

@@ -23,8 +23,7 @@ Measurement Noisy(const NoiseModel& noise, std::uint64_t seed, double step_deg,
   std::normal_distribution<double> normal(0, 1);
   for (std::size_t i = 0; i < measurement.samples.size(); ++i) {
     const double v = (*truth)[0][i] * measurement.samples.wi_z[i];
-    measurement.samples.values[0][i] +=
-        std::hypot(noise.floor, noise.relative * v) * normal(random) / measurement.samples.wi_z[i];
+    measurement.samples.values[0][i] += std::sqrt(noise.VarianceAt(v)) * normal(random) / measurement.samples.wi_z[i];
   }
   return measurement;
 }
@@ -46,6 +45,28 @@ TEST(EstimateNoise, FindsFloorAndRelativeNoiseAgainWhateverTheGainOfAnIncidence)
       }
     }
   }
+}
+
+TEST(EstimateNoise, FindsCountingNoiseWhereThereIsAndNoneWhereNot) {
+  int false_alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (const NoiseModel noise : {NoiseModel{0, 0, 0.001}, {0.001, 0.02, 0.002}}) {
+      std::vector<std::vector<double>> truth;
+      const Measurement measurement = Noisy(noise, seed, 5, &truth);
+      const std::optional<NoiseModel> found = EstimateNoise(measurement.samples, GroupByIncidence(measurement), truth);
+      ASSERT_TRUE(found);
+      EXPECT_NEAR(found->poisson / noise.poisson, 1, 0.35) << seed << " " << noise.floor;
+      // As a function of the value it is the noise, whichever term has it.
+      for (const double v : {0.02, 0.1, 0.5})
+        EXPECT_NEAR(std::sqrt(found->VarianceAt(v) / noise.VarianceAt(v)), 1, 0.2) << seed << " " << v;
+    }
+    std::vector<std::vector<double>> truth;
+    const Measurement measurement = Noisy({0.004, 0.05}, seed, 5, &truth);
+    const std::optional<NoiseModel> found = EstimateNoise(measurement.samples, GroupByIncidence(measurement), truth);
+    ASSERT_TRUE(found);
+    false_alarms += found->poisson > 0 ? 1 : 0;
+  }
+  EXPECT_LE(false_alarms, 1);
 }
 
 TEST(EstimateNoise, ExactValuesAndFewSamplesHaveNone) {

@@ -242,6 +242,45 @@ TEST(Takes, WhatTheCurveHasANumberFor) {
 }
 
 // The metric asinh and every metric's weight from a noise model, against 60 digits.
+// With counting noise: what is taken out of the difference is the mean that the noise gives it, by integration over the
+// noise, and the slope is its derivative.
+TEST(AsinhTransform, TakesTheMeanOfCountingNoiseOut) {
+  const NoiseModel noise = {0.001, 0.03, 0.002};
+  const Transform transform = TransformOf(Metric::kAsinh, noise);
+  EXPECT_DOUBLE_EQ(transform.knee, 0.06);
+  const double cosine = 1;
+  const auto residual = [&](double v, double m, double* slope) {
+    double value, unused;
+    Residuals(transform, &v, &cosine, &m, nullptr, 1, &value, slope != nullptr ? slope : &unused);
+    return value;
+  };
+  for (const double v : {0.01, 0.03, 0.1, 0.5, 2., 20.}) {
+    const double deviation = std::sqrt(noise.VarianceAt(v));
+    double mean = 0, mass = 0;
+    for (double z = -8; z <= 8; z += 1e-3) {
+      const double weight = std::exp(-0.5 * z * z);
+      mean += weight * residual(v, v + deviation * z, nullptr);
+      mass += weight;
+    }
+    double slope;
+    residual(v, v, &slope);
+    const double spread = deviation * slope;
+    // Without the shift up to 0.09 of the residual's standard deviation.
+    EXPECT_LT(std::fabs(mean / mass), 0.012 * spread) << v;
+    const double step = 1e-6 * v, m = 1.3 * v;
+    residual(v, m, &slope);
+    EXPECT_NEAR(slope, (residual(v + step, m, nullptr) - residual(v - step, m, nullptr)) / (2 * step), 1e-7 * slope);
+  }
+}
+
+// Without it the transform is what it was.
+TEST(AsinhTransform, WithoutCountingNoiseHasNoOtherShift) {
+  const Transform transform = TransformOf(Metric::kAsinh, {0.002, 0.04});
+  EXPECT_EQ(transform.knee, 0.002 / 0.04);
+  EXPECT_EQ(transform.floor_shift, 0);
+  EXPECT_EQ(transform.poisson_shift, 0);
+}
+
 TEST(ReferenceTable, AsinhResidual) {
   const ReferenceTable table("asinh_residual");
   ASSERT_EQ(table.size(), 80U);

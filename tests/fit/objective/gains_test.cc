@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/support/reference_table.h"
 #include "tests/support/synthetic.h"
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
@@ -113,6 +114,48 @@ TEST_P(GainsOf, AreTheSameWithManyThreads) {
     found.push_back(gains.logarithms());
   }
   EXPECT_EQ(found[0], found[1]);
+}
+
+// The table's profiled gains under asinh, by the kernel itself: a Lambert part of eight channels, whose albedos are the
+// table's eight values.
+TEST(ReferenceTable, GainsOfTheKernel) {
+  const ReferenceTable table("gain_profile");
+  constexpr std::size_t kValues = 8;
+  Samples samples;
+  samples.values.resize(kValues);
+  const double readings[kValues] = {};
+  samples.Append({0, 0, 1}, {0.6, 0, 0.8}, readings, 0);
+  Recipe recipe = DefaultRecipe(Model{}, "black");
+  recipe.metric = Metric::kLog;
+  const Incidences incidences = {{Vec3{0, 0, 1}}, {0}};
+  ThreadPool pool(1);
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    KernelModel model;
+    model.channels = kValues;
+    model.gains = true;
+    model.transform = {Curve::kAsinh, table(row, "knee")};
+    double largest = 0;
+    for (std::size_t c = 0; c < kValues; ++c) {
+      model.diffuse.push_back(kPi * table(row, "f" + std::to_string(c)));
+      samples.values[c][0] = table(row, "y" + std::to_string(c));
+      largest = std::max(largest, std::fabs(table(row, "dcost_asinh_df" + std::to_string(c))));
+    }
+    Problem problem(samples, recipe);
+    Gains gains(incidences);
+    const double square = table(row, "rho") * table(row, "rho");
+    gains.SetPrior(square, table(row, "s"));
+    problem.AttachGains(&gains);
+    gains.Profile(problem, model, &pool);
+    EXPECT_NEAR(gains.logarithms()[0], table(row, "ln_g"), 1e-9 * table(row, "s")) << row;
+    const KernelSums sums = problem.Sum(model, true, &pool);
+    const double cost = table(row, "cost_asinh");
+    EXPECT_NEAR(sums.sum_rho / square, cost, 1e-12 * std::max(1.0, cost)) << row;
+    for (std::size_t c = 0; c < kValues; ++c) {
+      // Columns of a channel: albedo, gain, residual.
+      const double slope = 2 * kPi * sums.gram[c][2] / square;
+      EXPECT_NEAR(slope, table(row, "dcost_asinh_df" + std::to_string(c)), 1e-9 * largest) << row << " " << c;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Metrics, GainsOf, testing::Values(Metric::kLog, Metric::kCubeRoot, Metric::kAsinh));

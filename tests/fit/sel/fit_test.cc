@@ -295,7 +295,7 @@ TEST(FitSel, FollowsAModel) {
   material.model = truth.model;
   material.channels = {"Y"};
   for (const std::vector<double>& values : truth.values)
-    material.parameters.push_back({values, {}, {}, {}, true, false});
+    material.parameters.push_back({values, {}, {}, {}, {}, true, false});
   Measurement measurement = SampleForSel(material);
   EXPECT_TRUE(measurement.isotropic);
   const Material lobes = FitSel(SelRecipeOf(2), {}, &measurement);

@@ -221,6 +221,15 @@ TEST(Csv, KeysStateTheInstrument) {
   EXPECT_DOUBLE_EQ(*stated.instrument.detector, DegreesToRadians(1.5));
   EXPECT_TRUE(*stated.instrument.plain_mean);
   // Prose that begins with the same words.
+  const Measurement uncertain = ReadText("# source: 2 +- 0.1 deg\n# detector: 0.5 x 3 deg\n" + row);
+  EXPECT_DOUBLE_EQ(*uncertain.instrument.source, DegreesToRadians(2));
+  EXPECT_DOUBLE_EQ(*uncertain.instrument.source_prior, DegreesToRadians(0.1));
+  EXPECT_DOUBLE_EQ(*uncertain.instrument.detector, DegreesToRadians(0.5));
+  EXPECT_DOUBLE_EQ(*uncertain.instrument.detector_across, DegreesToRadians(3));
+  EXPECT_FALSE(uncertain.instrument.detector_prior);
+  for (const char* bad :
+       {"# detector: 2 +- 0\n", "# detector: 0 +- 0.1\n", "# source: 1 x 3\n", "# detector: 1 x 40\n"})
+    EXPECT_THROW(ReadText(bad + row), InputError) << bad;
   const Measurement prose = ReadText("# source: xenon lamp\n# detector: InGaAs\n# mean: of 3 scans\n" + row);
   EXPECT_FALSE(prose.instrument.source || prose.instrument.detector || prose.instrument.plain_mean);
   // Half a turn on the stage: directions are those of the sample, and the alignment learns of it.

@@ -266,9 +266,44 @@ TEST(Rgl, TheMeanIsTakenWhereTheHalfVectorIsTheNormal) {
   EXPECT_EQ(at_normal, 6U);
   EXPECT_GE(m.set_aside[SetAsideReason::kDuplicate], 6U * 15);
   // Nothing speaks against a table without the sample's azimuth, however the rows of that column differ.
-  Convert({&m, TabulatedBrdf(spread.path(), m), m.channels, m.isotropic}, FindWriteFormat("merl", "x"), {},
+  Convert({&m, TabulatedBrdf(spread.path(), m).brdf, m.channels, m.isotropic}, FindWriteFormat("merl", "x"), {},
           table.path());
   EXPECT_EQ(ReadMeasurement(table.path()).format, "merl");
+}
+
+// Beside nodes below the horizon, and beyond the last viewer, a table says nothing: a MERL table made from it is marked
+// there, in place of values over a cosine that goes to zero.
+TEST(Rgl, MerlTablesMarkWhatWasNotMeasured) {
+  TestBrdf brdf;
+  brdf.alpha_y = brdf.alpha_x = 0.4;
+  brdf.tilt = 0;
+  RglWriteOptions options;
+  options.isotropic = true;
+  options.polar_angles = 6;
+  options.table_size = 16;
+  const TemporaryFile table, merl;
+  WriteRgl(Rgb(brdf), kThreeChannels, options, table.path());
+  const Measurement m = ReadMeasurement(table.path());
+  const TabulatedFunction function = TabulatedBrdf(table.path(), m);
+  double last = 0;
+  for (std::size_t i = 0; i < m.samples.size(); ++i) last = std::max(last, PolarAngle(m.samples.wo(i)));
+  const Vec3 wi = FromSpherical(0.5, 0), beyond = FromSpherical(0.5 * (last + kPi / 2), kPi);
+  EXPECT_TRUE(function.covers(wi, FromSpherical(0.4, 2)));
+  EXPECT_FALSE(function.covers(wi, beyond));
+  EXPECT_FALSE(function.covers(FromSpherical(kPi / 2 - 1e-3, 0), FromSpherical(0.4, 2)));
+
+  const Conversion conversion = Convert({&m, function.brdf, m.channels, m.isotropic, function.covers},
+                                        FindWriteFormat("merl", "x"), {}, merl.path());
+  const Measurement cells = ReadMeasurement(merl.path());
+  EXPECT_GT(cells.set_aside[SetAsideReason::kHole], 1000U);
+  EXPECT_GT(cells.samples.size(), 900'000U);
+  EXPECT_TRUE(std::any_of(conversion.losses.begin(), conversion.losses.end(), [](const std::string& loss) {
+    return loss.find("cells above the horizon are marked as not measured") != std::string::npos;
+  }));
+  double largest_sample = 0, largest_cell = 0;
+  for (const double value : m.samples.values[0]) largest_sample = std::max(largest_sample, value);
+  for (const double value : cells.samples.values[0]) largest_cell = std::max(largest_cell, value);
+  EXPECT_LT(largest_cell, 3 * largest_sample);
 }
 
 // Narrow lobes seen close to the horizon, where they change most from one viewer to the next.

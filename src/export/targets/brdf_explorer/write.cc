@@ -56,7 +56,7 @@ WrittenFiles WriteBrdfExplorer(const FittedBrdf& fit, const WriteContext& contex
   for (std::size_t p = 0; p < parameters; ++p) constants += IsOfProfile(fit, p) ? 1 : 0;
   const char* const note = "the numbers of a profile have no sliders: the tables of the masking belong to them";
   if (constants > 0) header.emplace_back(note);
-  WrittenFiles written = WriteShader(fit, context.File(".brdf"), BrdfExplorerText(fit, header));
+  WrittenFiles written = WriteShader(context.File(".brdf"), BrdfExplorerText(fit, header));
   if (constants > 0) written.notes.emplace_back(note);
   return written;
 }

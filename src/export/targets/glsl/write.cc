@@ -11,7 +11,7 @@ namespace lobefit {
 namespace {
 
 WrittenFiles WriteGlsl(const FittedBrdf& fit, const WriteContext& context) {
-  return WriteShader(fit, context.File(".glsl"), GlslText(fit, context.name, context.header));
+  return WriteShader(context.File(".glsl"), GlslText(fit, context.name, context.header));
 }
 
 }  // namespace

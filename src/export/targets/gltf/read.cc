@@ -1,6 +1,7 @@
 #include "lobefit/export/targets/gltf/read.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -70,6 +71,7 @@ class GltfReader {
 
     GltfMaterial material;
     material.base_color = Color(pbr, "baseColorFactor", 4, {1, 1, 1});
+    CheckColor("baseColorFactor", material.base_color, 1);
     material.metallic = Factor(pbr, "metallicFactor", 1);
     material.roughness.roughness = Factor(pbr, "roughnessFactor", 1);
     material.roughness.anisotropy = Factor(anisotropy, "anisotropyStrength", 0);
@@ -77,8 +79,11 @@ class GltfReader {
     material.clearcoat = Factor(clearcoat, "clearcoatFactor", 0);
     material.clearcoat_roughness = Factor(clearcoat, "clearcoatRoughnessFactor", 0);
     material.ior = Real(ior, "ior", 1.5);
+    if (material.ior != 0 && !(material.ior >= 1))
+      Fail(fmt::format("member 'ior' is {}; 0, or 1 and more is allowed", material.ior));
     material.specular = Factor(specular, "specularFactor", 1);
     material.specular_color = Color(specular, "specularColorFactor", 3, {1, 1, 1});
+    CheckColor("specularColorFactor", material.specular_color, std::numeric_limits<double>::max());
     if (entry.contains("normalTexture")) material.normal = NormalOf(Object(entry, "normalTexture", none));
     return material;
   }
@@ -90,6 +95,9 @@ class GltfReader {
       remarks.push_back(
           fmt::format("the material {} ('{}') is left out: the first one, '{}', is taken", k, NameOf(k), NameOf(0)));
     }
+    if (HasVertexColors())
+      remarks.emplace_back(
+          "the colours of the mesh's vertices (COLOR_0), which multiply the base colour, are left out");
     return remarks;
   }
 
@@ -116,6 +124,18 @@ class GltfReader {
                          Join(known)));
       }
     }
+  }
+
+  bool HasVertexColors() const {
+    const auto meshes = json_.find("meshes");
+    if (meshes == json_.end() || !meshes->is_array()) return false;
+    return std::any_of(meshes->begin(), meshes->end(), [](const Json& mesh) {
+      if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) return false;
+      return std::any_of(mesh["primitives"].begin(), mesh["primitives"].end(), [](const Json& part) {
+        return part.is_object() && part.contains("attributes") && part["attributes"].is_object() &&
+               part["attributes"].contains("COLOR_0");
+      });
+    });
   }
 
   std::string NameOf(std::size_t material) const {
@@ -166,6 +186,13 @@ class GltfReader {
       color[c] = (*found)[c].get<double>();
     }
     return color;
+  }
+
+  void CheckColor(const char* name, const Color3& color, double most) const {
+    for (const double part : color) {
+      if (!(part >= 0 && part <= most))
+        Fail(fmt::format("member '{}' holds {}; {} is allowed", name, part, most == 1 ? "0 to 1" : "0 and more"));
+    }
   }
 
   const Json& Item(const char* list, const Json& index) const {

@@ -21,7 +21,11 @@ namespace {
 class MaterialXReader {
  public:
   explicit MaterialXReader(const InputFile& file) : xml_(file) {
-    for (const pugi::xml_node node : xml_.root().children()) nodes_[node.attribute("name").value()] = node;
+    for (const pugi::xml_node node : xml_.root().children()) {
+      const std::string name = node.attribute("name").value();
+      if (!nodes_.emplace(name, node).second && !name.empty())
+        xml_.Fail(node, fmt::format("the name '{}' is given twice", Excerpt(name)));
+    }
   }
 
   ImportedMaterial Read() const {
@@ -49,6 +53,10 @@ class MaterialXReader {
                                {{"R", "G", "B"}, {}},
                                SurfaceBrdf(surface),
                                {"evaluated as MaterialX' GLSL does"}};
+    for (const pugi::xml_node include : xml_.root().children("xi:include")) {
+      result.remarks.push_back(fmt::format("the file '{}' of line {} was not looked into",
+                                           Excerpt(include.attribute("href").value()), xml_.Line(include)));
+    }
     for (pugi::xml_node other = material.next_sibling("surfacematerial"); other;
          other = other.next_sibling("surfacematerial")) {
       result.remarks.push_back(fmt::format("the material '{}' of line {} is left out: the first one, '{}', is taken",
@@ -201,12 +209,15 @@ class MaterialXReader {
     if (depth > 16) xml_.Fail(node, "the graph of BSDFs is too deep");
     const bool is_bsdf = type == "add" || type == "mix" || type.ends_with("_bsdf");
     if (is_bsdf && MaterialXInputs().count(type) > 0) CheckInputs(node);
-    const double own = weight * Real(node, "weight", 1);
+    const double share = Real(node, "weight", 1);
+    if (!(share >= 0 && share <= 1)) xml_.Fail(node, fmt::format("its weight is {}; 0 to 1 is allowed", share));
+    const double own = weight * share;
     if (type == "add") {
       Add(Source(node, "in1"), weight, depth + 1, surface);
       Add(Source(node, "in2"), weight, depth + 1, surface);
     } else if (type == "mix") {
       const double mix = Real(node, "mix", 0);
+      if (!(mix >= 0 && mix <= 1)) xml_.Fail(node, fmt::format("its mix is {}; 0 to 1 is allowed", mix));
       Add(Source(node, "fg"), weight * mix, depth + 1, surface);
       Add(Source(node, "bg"), weight * (1 - mix), depth + 1, surface);
     } else if (type == "oren_nayar_diffuse_bsdf") {

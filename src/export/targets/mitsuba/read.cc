@@ -69,6 +69,10 @@ class MitsubaReader {
       result.remarks.emplace_back("the texture coordinates of the mesh are turned as the file's comment says");
     if (old_names_)
       result.remarks.emplace_back("names are those of scenes before version 2, as Mitsuba 3 upgrades them");
+    for (const pugi::xml_node include : xml_.root().children("include")) {
+      result.remarks.push_back(fmt::format("the file '{}' of line {} was not looked into",
+                                           Excerpt(include.attribute("filename").value()), xml_.Line(include)));
+    }
     for (const pugi::xml_node shape : xml_.root().children("shape")) {
       if (!shape.child("bsdf")) continue;
       result.remarks.push_back(fmt::format(
@@ -244,11 +248,17 @@ class MitsubaReader {
       if (nested.size() > 1) Add(nested[1], weight * second, normal, surface);
     } else if (type == "diffuse") {
       const Spectrum reflectance = Color(bsdf, "reflectance", 0.5);
+      for (const double value : reflectance) CheckReflectance(bsdf, "reflectance", value);
       for (std::size_t c = 0; c < reflectance.size(); ++c) surface->diffuse[c] += weight * reflectance[c];
       if (normal.z < 1) surface->diffuse_normal = normal;
     } else {
       AddConductor(bsdf, weight, normal, surface);
     }
+  }
+
+  // Mitsuba refuses what a reflectance cannot be.
+  void CheckReflectance(pugi::xml_node bsdf, const char* name, double value) const {
+    if (!(value >= 0 && value <= 1)) xml_.Fail(bsdf, fmt::format("its {} holds {}; 0 to 1 is allowed", name, value));
   }
 
   Vec3 NormalOf(pugi::xml_node bsdf) const {
@@ -281,7 +291,9 @@ class MitsubaReader {
       xml_.Fail(bsdf, "its alpha is not above 0");
     lobe.rotation = rotation_;
     lobe.normal = normal;
-    lobe.weight = weight * Real(bsdf, "specular_reflectance", 1);
+    const double factor = Real(bsdf, "specular_reflectance", 1);
+    CheckReflectance(bsdf, "specular_reflectance", factor);
+    lobe.weight = weight * factor;
     lobe.fresnel.kind = SurfaceFresnel::Kind::kConductor;
     lobe.fresnel.eta = Color(bsdf, "eta", 0);
     lobe.fresnel.k = Color(bsdf, "k", 1);

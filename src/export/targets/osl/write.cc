@@ -36,7 +36,7 @@ std::string FunctionText(const FittedBrdf& fit) {
 WrittenFiles WriteOsl(const FittedBrdf& fit, const WriteContext& context) {
   std::vector<std::string> header = context.header;
   header.emplace_back(kNoClosure);
-  WrittenFiles written = WriteShader(fit, context.File(".osl"), OslText(fit, context.name, header));
+  WrittenFiles written = WriteShader(context.File(".osl"), OslText(fit, context.name, header));
   written.notes.emplace_back(kNoClosure);
   return written;
 }

@@ -306,6 +306,7 @@ class PbrtReader {
     }
     const auto alpha = [&](const char* name) {
       const double value = Real(entry, name, roughness);
+      if (!(value >= 0)) Fail(entry.line, fmt::format("{} is {}; 0 and more is allowed", name, value));
       return std::max(1e-4, remapped ? PbrtRemappedAlpha(value) : value);
     };
     const Widths widths = {alpha("uroughness"), alpha("vroughness")};

@@ -6,6 +6,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text.h"
+#include "lobefit/io/csv/head/conventions.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/no_value.h"
 #include "lobefit/io/csv/head/phrases.h"
@@ -71,6 +72,32 @@ std::string_view NumberOfDegrees(std::string_view word) {
   return word;
 }
 
+// "1.5 deg", "1.5 +- 0.2 deg", "1.5 x 4 deg" of a rectangle.
+struct HalfAngle {
+  double degrees = 0;
+  std::optional<double> uncertainty, across;
+};
+std::optional<HalfAngle> ParseHalfAngle(std::string_view word) {
+  word = NumberOfDegrees(word);
+  for (const std::string_view sign : {"+-", "+/-", "\u00b1"}) {
+    const std::size_t at = word.find(sign);
+    if (at == std::string_view::npos) continue;
+    const std::optional<double> value = ParseDouble(NumberOfDegrees(Trim(word.substr(0, at)))),
+                                uncertainty = ParseDouble(Trim(word.substr(at + sign.size())));
+    if (!value || !uncertainty) return std::nullopt;
+    return HalfAngle{*value, uncertainty, {}};
+  }
+  if (const std::size_t at = word.find('x'); at != std::string_view::npos) {
+    const std::optional<double> value = ParseDouble(NumberOfDegrees(Trim(word.substr(0, at)))),
+                                across = ParseDouble(Trim(word.substr(at + 1)));
+    if (!value || !across) return std::nullopt;
+    return HalfAngle{*value, {}, across};
+  }
+  const std::optional<double> value = ParseDouble(word);
+  if (!value) return std::nullopt;
+  return HalfAngle{*value, {}, {}};
+}
+
 bool Is(const std::string& name, std::initializer_list<std::string_view> spellings) {
   return std::find(spellings.begin(), spellings.end(), name) != spellings.end();
 }
@@ -128,6 +155,7 @@ const FixedCoordinate* CsvKeys::Find(Coordinate coordinate) const {
 }
 
 bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, CsvKeys* keys) {
+  if (ReadConvention(line, text, keys)) return true;
   const std::size_t at = text.find_first_of(":=");
   if (at == std::string_view::npos) return ReadSentence(text, keys) || ReadPhrase(text, keys);
   if (ReadCoordinates(text, keys)) return true;
@@ -173,15 +201,39 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
         file, line, word, [](const std::string& words) { NoValues marks(words); }, &keys->no_value);
   } else if (name == "exclude") {
     SetOption(file, line, word, ParseExclusions, &keys->exclude);
-  } else if ((name == "source" || name == "detector") && ParseDouble(NumberOfDegrees(word))) {
+  } else if ((name == "source" || name == "detector") && ParseHalfAngle(word)) {
     // Without a number it is prose ("# source: xenon lamp").
-    const double degrees = *ParseDouble(NumberOfDegrees(word));
-    if (!(degrees >= 0 && degrees <= kLargestHalfAngleDeg)) {
+    const HalfAngle stated = *ParseHalfAngle(word);
+    if (!(stated.degrees >= 0 && stated.degrees <= kLargestHalfAngleDeg)) {
       FailAtLine(file, line,
                  name + " is '" + Excerpt(word) + "'; the half angle of its disc is allowed, 0 to " +
                      FormatDouble(kLargestHalfAngleDeg) + " degrees");
     }
-    (name == "source" ? keys->instrument.source : keys->instrument.detector) = DegreesToRadians(degrees);
+    if (stated.uncertainty &&
+        !(*stated.uncertainty > 0 && *stated.uncertainty <= kLargestHalfAngleDeg && stated.degrees > 0)) {
+      FailAtLine(file, line,
+                 name + " is '" + Excerpt(word) +
+                     "'; as in 1.5 +- 0.2 a half angle above 0 and its standard deviation are allowed, both at most " +
+                     FormatDouble(kLargestHalfAngleDeg) + " degrees");
+    }
+    StatedInstrument* instrument = &keys->instrument;
+    const bool is_source = name == "source";
+    if (stated.across &&
+        (is_source || !(*stated.across > 0 && *stated.across <= kLargestHalfAngleDeg && stated.degrees > 0))) {
+      FailAtLine(file, line,
+                 name + " is '" + Excerpt(word) +
+                     "'; as in 1.5 x 4 the half angles of a rectangular detector are allowed, along the meridian and "
+                     "across it, above 0 and at most " +
+                     FormatDouble(kLargestHalfAngleDeg) + " degrees");
+    }
+    if (!is_source) {
+      instrument->detector_across.reset();
+      if (stated.across) instrument->detector_across = DegreesToRadians(*stated.across);
+    }
+    (is_source ? instrument->source : instrument->detector) = DegreesToRadians(stated.degrees);
+    std::optional<double>& prior = is_source ? instrument->source_prior : instrument->detector_prior;
+    prior.reset();
+    if (stated.uncertainty) prior = DegreesToRadians(*stated.uncertainty);
   } else if (name == "mean" && (word == "flux" || word == "plain")) {
     keys->instrument.plain_mean = word == "plain";
   } else if (name == "value-column") {
@@ -211,6 +263,7 @@ bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::str
   const bool marked = filled[0].find_first_of(":=") != std::string_view::npos ||
                       (filled.size() > 1 && filled[1].find_first_of(":=") == 0);
   if (!marked) {
+    if (filled.size() == 1 && ReadConvention(line, filled[0], keys)) return true;
     if (filled.size() == 1) return ReadSentence(filled[0], keys) || ReadPhrase(filled[0], keys);
     // "Scan 3, incidence 30 deg"
     for (const std::string_view field : filled) {

@@ -22,6 +22,9 @@ struct FixedCoordinate {
   friend bool operator==(const FixedCoordinate&, const FixedCoordinate&) = default;
 };
 
+// Where a sentence says that the viewer's angles count from.
+enum class ViewerZero { kNotSaid, kMirror, kIncidentBeam };
+
 struct CsvKeys {
   std::optional<AngleUnit> angle_unit;
   std::optional<ValueKind> value_kind;
@@ -30,6 +33,7 @@ struct CsvKeys {
   std::optional<WavelengthUnit> wavelength_unit;
   std::optional<double> wavelength_nm;
   StatedInstrument instrument;
+  ViewerZero viewer_zero = ViewerZero::kNotSaid;
   std::vector<FixedCoordinate> fixed;  // each coordinate at most once
   std::string lone_azimuth;            // "Azimuth: 90", whose it is not said
   std::string columns, where, no_value, exclude, value_column, repeated;

@@ -16,7 +16,7 @@ struct Synonym {
   ColumnRole role;
   Coordinate coordinate = Coordinate::kThetaI;
 };
-constexpr std::array<Synonym, 47> kSynonyms = {{
+constexpr std::array<Synonym, 53> kSynonyms = {{
     {"aoi", ColumnRole::kCoordinate, Coordinate::kThetaI},
     {"incidence", ColumnRole::kCoordinate, Coordinate::kThetaI},
     {"incident", ColumnRole::kCoordinate, Coordinate::kThetaI},
@@ -50,6 +50,12 @@ constexpr std::array<Synonym, 47> kSynonyms = {{
     {"dtheta", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
     {"aspecular", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
     {"aspecular_angle", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
+    {"bistatic", ColumnRole::kCoordinate, Coordinate::kBistatic},
+    {"bistatic_angle", ColumnRole::kCoordinate, Coordinate::kBistatic},
+    {"deviation_angle", ColumnRole::kCoordinate, Coordinate::kDeviation},
+    {"angle_of_deviation", ColumnRole::kCoordinate, Coordinate::kDeviation},
+    {"total_deviation", ColumnRole::kCoordinate, Coordinate::kDeviation},
+    {"total_deviation_angle", ColumnRole::kCoordinate, Coordinate::kDeviation},
     {"beta_0", ColumnRole::kCoordinate, Coordinate::kBeta0},
     {"beta", ColumnRole::kCoordinate, Coordinate::kBeta},
     {"beta_s", ColumnRole::kCoordinate, Coordinate::kBeta},
@@ -123,9 +129,9 @@ constexpr std::array<std::string_view, 55> kIgnored = {"index",
                                                        "background"};
 
 // Short names of angles that mean nothing else.
-constexpr std::array<std::string_view, 16> kAngleShorthands = {"aoi",  "aor",    "aov",      "sza",      "iza", "saa",
-                                                               "iaa",  "vza",    "oza",      "vaa",      "oaa", "raa",
-                                                               "dphi", "dtheta", "dazimuth", "aspecular"};
+constexpr std::array<std::string_view, 17> kAngleShorthands = {"aoi",  "aor",    "aov",      "sza",       "iza", "saa",
+                                                               "iaa",  "vza",    "oza",      "vaa",       "oaa", "raa",
+                                                               "dphi", "dtheta", "dazimuth", "aspecular", "psi"};
 
 // "pol", "source polarization", "analyzer angle (deg)": what tells rows of the same directions apart.
 bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {
@@ -165,43 +171,6 @@ bool IsValueWord(const std::string& word) {
 bool IsMuellerRatio(const NameList& words) {
   return words.size() == 4 && words[0] == "f" && words[2] == "f" && words[3] == "r11" && words[1].size() == 3 &&
          words[1][0] == 'r';
-}
-
-// "AOI=10", "theta_i 30", "BRDF (AOI 10 deg)", "10deg": a column of values at a fixed angle.
-bool ClassifyFixed(const NameList& words, CsvColumn* column) {
-  std::optional<double> number;
-  NameList rest;
-  std::string unit = column->unit;
-  for (const std::string& word : words) {
-    std::size_t digits = word.size();
-    while (digits > 0 && !(word[digits - 1] >= '0' && word[digits - 1] <= '9')) --digits;
-    const std::string tail = word.substr(digits);
-    if (!number && digits > 0 && ParseDouble(word.substr(0, digits)) && (tail.empty() || ParseAngleUnit(tail)) &&
-        word.find('e') == std::string::npos) {
-      number = ParseDouble(word.substr(0, digits));
-      if (!tail.empty()) unit = tail;
-    } else if (!(ParseAngleUnit(word) && word != "deg") && word != "deg" && word != "at" && !IsValueWord(word)) {
-      rest.push_back(word);
-    } else if (ParseAngleUnit(word)) {
-      unit = word;
-    }
-  }
-  if (!number || !std::isfinite(*number)) return false;
-  column->fixed = *number;
-  column->unit = unit;
-  if (rest.empty()) {
-    column->role = ColumnRole::kNumber;
-    column->angle_unit = ParseAngleUnit(unit);
-    return true;
-  }
-  const CsvColumn left = ClassifyColumn(Joined(rest));
-  if (left.role != ColumnRole::kCoordinate) return false;
-  column->role = ColumnRole::kFixed;
-  column->coordinate = left.coordinate;
-  column->form = left.form;
-  column->letter_s = left.letter_s;
-  column->angle_unit = ParseAngleUnit(unit);
-  return true;
 }
 
 void ParseUnit(CsvColumn* column) {
@@ -269,6 +238,42 @@ void ParseUnit(CsvColumn* column) {
 }
 
 }  // namespace
+
+bool ClassifyFixed(const NameList& words, CsvColumn* column) {
+  std::optional<double> number;
+  NameList rest;
+  std::string unit = column->unit;
+  for (const std::string& word : words) {
+    std::size_t digits = word.size();
+    while (digits > 0 && !(word[digits - 1] >= '0' && word[digits - 1] <= '9')) --digits;
+    const std::string tail = word.substr(digits);
+    if (!number && digits > 0 && ParseDouble(word.substr(0, digits)) && (tail.empty() || ParseAngleUnit(tail)) &&
+        word.find('e') == std::string::npos) {
+      number = ParseDouble(word.substr(0, digits));
+      if (!tail.empty()) unit = tail;
+    } else if (!(ParseAngleUnit(word) && word != "deg") && word != "deg" && word != "at" && !IsValueWord(word)) {
+      rest.push_back(word);
+    } else if (ParseAngleUnit(word)) {
+      unit = word;
+    }
+  }
+  if (!number || !std::isfinite(*number)) return false;
+  column->fixed = *number;
+  column->unit = unit;
+  if (rest.empty()) {
+    column->role = ColumnRole::kNumber;
+    column->angle_unit = ParseAngleUnit(unit);
+    return true;
+  }
+  const CsvColumn left = ClassifyColumn(Joined(rest));
+  if (left.role != ColumnRole::kCoordinate) return false;
+  column->role = ColumnRole::kFixed;
+  column->coordinate = left.coordinate;
+  column->form = left.form;
+  column->letter_s = left.letter_s;
+  column->angle_unit = ParseAngleUnit(unit);
+  return true;
+}
 
 CsvColumn ClassifyColumn(std::string_view name) {
   CsvColumn column;
@@ -351,7 +356,8 @@ bool LooksLikeAngle(const CsvColumn& column) {
 }
 
 std::string AllowedColumns() {
-  return "theta_i, phi_i, theta_o, phi_o, dphi, azimuth with incidence and receive, theta_o - theta_i, beta - beta0, "
+  return "theta_i, phi_i, theta_o, phi_o, dphi, azimuth with incidence and receive, theta_o - theta_i, bistatic angle, "
+         "deviation angle, beta - beta0, "
          "theta_h phi_h theta_d "
          "phi_d, wi_x ... wo_z, sample_rotation, wavelength, one of f fr f_r brdf bsdf value, or R G B, or X Y Z, or "
          "wavelengths as 550nm; "

@@ -24,6 +24,8 @@ enum class Coordinate : std::uint8_t {
   kBeta0,         // sin theta_i
   kBeta,          // sin theta_o in the plane of incidence
   kBetaOffset,    // beta - beta0
+  kBistatic,      // theta_i + theta_o in the plane of incidence: the angle from the light to the viewer
+  kDeviation,     // 180 degrees less that: the angle by which the light is turned
   kPhase,         // angle between the two directions
   kThetaH,
   kPhiH,

@@ -51,7 +51,8 @@ std::string DirectionReader::Missing() const {
     return "";
   }
   if (!Has(C::kThetaI) && !Has(C::kBeta0)) return "the polar angle of the light (theta_i)";
-  if (!Has(C::kThetaO) && !Has(C::kFromSpecular) && !Has(C::kBeta) && !Has(C::kBetaOffset))
+  if (!Has(C::kThetaO) && !Has(C::kFromSpecular) && !Has(C::kBistatic) && !Has(C::kDeviation) && !Has(C::kBeta) &&
+      !Has(C::kBetaOffset))
     return "the polar angle of the viewer (theta_o)";
   return "";
 }
@@ -94,6 +95,15 @@ bool DirectionReader::ViewerInPlane(const Coordinates& at, double sin_i, double 
     const double s = magnitude_ ? sign * std::fabs(offset.sin) : sign * offset.sin;
     *sin_o = sin_i * offset.cos + cos_i * s;
     *cos_o = cos_i * offset.cos - sin_i * s;
+    return true;
+  }
+  if (Has(Coordinate::kBistatic) || Has(Coordinate::kDeviation)) {
+    const bool bistatic = Has(Coordinate::kBistatic);
+    const Angle& between = Of(bistatic ? Coordinate::kBistatic : Coordinate::kDeviation, at);
+    // theta_o = b - theta_i, with b = 180 degrees - deviation.
+    const double cos_b = bistatic ? between.cos : -between.cos;
+    *sin_o = between.sin * cos_i - cos_b * sin_i;
+    *cos_o = cos_b * cos_i + between.sin * sin_i;
     return true;
   }
   const double beta = Has(Coordinate::kBeta) ? number(Coordinate::kBeta)

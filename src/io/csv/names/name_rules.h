@@ -48,5 +48,7 @@ bool ClassifyChannel(NameList words, CsvColumn* column);
 // A channel beside the name of a value: "brdf_r", "f 550nm".
 bool ClassifyValueOfChannel(const NameList& words, CsvColumn* column);
 bool ClassifyWavelengthColumn(const NameList& words, CsvColumn* column);
+// "AOI=10", "theta_i 30", "BRDF (AOI 10 deg)", "10deg": a column of values at a fixed angle.
+bool ClassifyFixed(const NameList& words, CsvColumn* column);
 
 }  // namespace lobefit

@@ -14,18 +14,23 @@ namespace {
 constexpr std::array<std::string_view, 19> kFillers = {
     "of",      "the", "de",       "di",    "del",         "der",         "des",   "la",     "a",   "mean",
     "average", "avg", "measured", "total", "unpolarized", "unpolarised", "value", "values", "from"};
-constexpr std::array<std::string_view, 22> kSpread = {
-    "sigma",       "std",         "stdev",         "stddev", "sd",
-    "sem",         "uncertainty", "uncertainties", "unc",    "unsicherheit",
-    "incertitude", "incertezza",  "incertidumbre", "error",  "err",
-    "fehler",      "erreur",      "deviation",     "u",      "stderr",
-    "sdev",        "rsd"};
+constexpr std::array<std::string_view, 24> kSpread = {
+    "sigma",         "std",      "stdev",        "stddev",      "sd",         "sem",           "uncertainty",
+    "uncertainties", "unc",      "unsicherheit", "incertitude", "incertezza", "incertidumbre", "error",
+    "err",           "fehler",   "erreur",       "deviation",   "u",          "stderr",        "sdev",
+    "rsd",           "\xc2\xb1", "errbar"};
+
+constexpr std::array<std::string_view, 7> kWhiteStandards = {"spectralon", "ptfe", "halon",    "fluorilon",
+                                                             "white",      "srs",  "labsphere"};
+constexpr std::array<std::string_view, 12> kRelatedTo = {"relative",   "rel",      "to",        "vs",
+                                                         "versus",     "standard", "reference", "normalised",
+                                                         "normalized", "plaque",   "tile",      "panel"};
 
 struct ValueName {
   std::string_view name;
   std::optional<ValueKind> kind;
 };
-constexpr std::array<ValueName, 55> kValues = {{
+constexpr std::array<ValueName, 60> kValues = {{
     {"value", {}},
     {"values", {}},
     {"val", {}},
@@ -64,6 +69,9 @@ constexpr std::array<ValueName, 55> kValues = {{
     {"bsdf_cosine_corrected", ValueKind::kBrdfCosO},
     {"cos_corrected_brdf", ValueKind::kBrdfCosO},
     {"dsf", ValueKind::kBrdfCosO},
+    {"ars", ValueKind::kBrdfCosO},
+    {"angle_resolved_scatter", ValueKind::kBrdfCosO},
+    {"angle_resolved_scattering", ValueKind::kBrdfCosO},
     {"f_cos_i", ValueKind::kBrdfCosI},
     {"brdf_cos_i", ValueKind::kBrdfCosI},
     {"brdf_cos_theta_i", ValueKind::kBrdfCosI},
@@ -79,6 +87,8 @@ constexpr std::array<ValueName, 55> kValues = {{
     {"bidirectional_reflectance_factor", ValueKind::kReflectanceFactor},
     {"radiance_factor", ValueKind::kReflectanceFactor},
     {"radiance_coefficient", ValueKind::kReflectanceFactor},
+    {"radiance_factor_beta", ValueKind::kReflectanceFactor},
+    {"beta_radiance_factor", ValueKind::kReflectanceFactor},
     {"intensity", ValueKind::kIntensity},
     {"rt", ValueKind::kReading},
 }};
@@ -216,8 +226,13 @@ bool ClassifySpread(const NameWords& name, CsvColumn* column) {
       spread || standard || HoldsWord(kFunctions, name.function) || name.function == "unc" || name.function == "stdev";
   if (!spread) return false;
   if (Joined(rest) == "s_d") rest.clear();
-  if (!rest.empty() && !(rest.size() == 2 && FindValue(Joined(rest)) != nullptr) && !ClassifyChannel(rest, column))
-    return false;
+  // "u AOI=10", "30 deg err": of the values at that angle.
+  CsvColumn at;
+  if (!rest.empty() && !(rest.size() == 2 && FindValue(Joined(rest)) != nullptr) && !ClassifyChannel(rest, column)) {
+    if (!ClassifyFixed(rest, &at)) return false;
+    column->fixed = at.fixed;
+    column->unit.clear();  // that of the angle
+  }
   column->role = ColumnRole::kSigma;
   if (expanded && column->coverage_factor == 1 &&
       std::find(name.words.begin(), name.words.end(), "k") == name.words.end()) {
@@ -237,6 +252,19 @@ bool ClassifyValue(const NameWords& name, CsvColumn* column) {
       (words[0] == "log10" || words[0] == "ln" || words[0] == "log" || words[0] == "lg" || words[0] == "10log10")) {
     scale = words[0];
     words.erase(words.begin());
+  }
+  // A white standard diffuses nearly all light: what is related to it is pi f_r.
+  const std::size_t before = words.size();
+  std::erase_if(words, [](const std::string& word) { return HoldsWord(kWhiteStandards, word); });
+  const bool to_white = words.size() < before;
+  if (to_white) {
+    std::erase_if(words, [](const std::string& word) { return HoldsWord(kRelatedTo, word); });
+    const std::string rest = Joined(words);
+    if (rest != "reflectance" && rest != "reflectance_factor" && rest != "radiance_factor" && rest != "brf")
+      return false;
+    column->role = ColumnRole::kValue;
+    column->value_kind = ValueKind::kReflectanceFactor;
+    return true;
   }
   const std::string joined = Joined(words);
   const ValueName* value = FindValue(joined);

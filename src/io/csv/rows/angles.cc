@@ -33,6 +33,7 @@ class AngleFinder {
     ResolveLetters();
     ResolveDifferences();
     ResolveLone();
+    ResolveViewerZero();
     ResolvePhase();
     DropRedundant();
     Give();
@@ -115,7 +116,10 @@ class AngleFinder {
   }
 
   bool HasLight() { return Known(C::kThetaI) || Known(C::kBeta0); }
-  bool HasViewer() { return Known(C::kThetaO) || Known(C::kFromSpecular) || Known(C::kBeta) || Known(C::kBetaOffset); }
+  bool HasViewer() {
+    return Known(C::kThetaO) || Known(C::kFromSpecular) || Known(C::kBistatic) || Known(C::kDeviation) ||
+           Known(C::kBeta) || Known(C::kBetaOffset);
+  }
 
   void ResolveLone() {
     if (Count(C::kTheta) == 1 && !Known(C::kThetaH)) {
@@ -148,6 +152,23 @@ class AngleFinder {
       notes_.conventions["azimuths"] = Excerpt(phi) + " is relative to the light: 180 degrees is the mirror's side";
       Become(C::kPhi, C::kDeltaPhi);
     }
+  }
+
+  // Where a sentence of the file says what the viewer's angles count from. An explicit choice of the column goes first.
+  void ResolveViewerZero() {
+    const ViewerZero zero = header_.keys.viewer_zero;
+    if (zero == ViewerZero::kNotSaid || Count(C::kThetaO) != 1 || options_.columns.find('=') != std::string::npos)
+      return;
+    if (zero == ViewerZero::kMirror) {
+      Become(C::kThetaO, C::kFromSpecular);
+      return;
+    }
+    const std::string name = Excerpt(NameOf(C::kThetaO, "theta_o"));
+    Fail("a line says that the angles of '" + name +
+         "' count from the incident beam, but not whether from the light or from where it would go on; say it with "
+         "--columns \"bistatic=" +
+         name + "\" (theta_i + theta_o, 0 is the light), --columns \"deviation angle=" + name +
+         "\" (180 degrees less that), or --columns \"theta_o=" + name + "\" if they count from the normal");
   }
 
   // The angle of a row's field in radians; NaN where it is none.
@@ -206,8 +227,9 @@ class AngleFinder {
   void DropRedundant() {
     for (CsvColumn& column : columns_) {
       if (column.role != ColumnRole::kCoordinate) continue;
-      const bool offset =
-          column.coordinate == C::kFromSpecular || column.coordinate == C::kBetaOffset || column.coordinate == C::kBeta;
+      const bool offset = column.coordinate == C::kFromSpecular || column.coordinate == C::kBetaOffset ||
+                          column.coordinate == C::kBeta || column.coordinate == C::kBistatic ||
+                          column.coordinate == C::kDeviation;
       const bool sine = column.coordinate == C::kBeta0;
       const bool phase =
           column.coordinate == C::kPhase && (Known(C::kPhiO) || Known(C::kDeltaPhi) || Known(C::kAzimuth));

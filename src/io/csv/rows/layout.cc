@@ -301,8 +301,38 @@ class LayoutBuilder {
     measurement_->conventions["wavelength-unit"] = std::string(layout_.wavelength_unit.name) + origin;
   }
 
+  // In a table with a column for each angle the uncertainties stand behind their values, all of one name or none. True
+  // where there are such.
+  bool PairUncertainties() {
+    if (layout_.groups.size() < 2 || std::none_of(columns_.begin(), columns_.end(), [](const CsvColumn& column) {
+          return column.role == ColumnRole::kSigma;
+        }))
+      return false;
+    std::size_t paired = 0;
+    for (ValueGroup& group : layout_.groups) {
+      const std::size_t next = group.values.back() + 1;
+      if (group.values.size() != 1 || next >= columns_.size() || columns_[next].role != ColumnRole::kSigma) continue;
+      const CsvColumn& sigma = columns_[next];
+      if (sigma.fixed != 0 && sigma.fixed != columns_[next - 1].fixed)
+        Fail("the column " + Quoted(sigma) + " stands behind " + Quoted(columns_[next - 1]) +
+             " and speaks of another angle; put each uncertainty behind its value");
+      group.sigma = next;
+      ++paired;
+    }
+    if (paired == 0) return false;
+    if (paired < layout_.groups.size())
+      Fail("only " + std::to_string(paired) + " of " + std::to_string(layout_.groups.size()) +
+           " columns of values have an uncertainty behind them; give all or none");
+    measurement_->remarks.push_back("the uncertainty of each column of values is the column behind it");
+    return true;
+  }
+
   void FindUncertainties() {
     layout_.weight = FindOnly(ColumnRole::kWeight);
+    if (PairUncertainties()) {
+      if (layout_.weight != kNoColumn) Fail("both weight and sigma columns are given; remove one of them");
+      return;
+    }
     std::map<std::string, std::size_t> by_channel;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const CsvColumn& column = columns_[i];
@@ -332,7 +362,7 @@ class LayoutBuilder {
 
   bool IsUsed(std::size_t i) const {
     const auto is_value = [&](const ValueGroup& group) {
-      return std::find(group.values.begin(), group.values.end(), i) != group.values.end();
+      return i == group.sigma || std::find(group.values.begin(), group.values.end(), i) != group.values.end();
     };
     return std::any_of(layout_.groups.begin(), layout_.groups.end(), is_value) || i == layout_.sigma ||
            i == layout_.weight || i == layout_.wavelength || IsPolarisation(i) ||

@@ -20,6 +20,7 @@ struct ValueGroup {
   std::vector<std::pair<Coordinate, double>> fixed;
   std::vector<std::size_t> values;
   std::string polarisation = {};  // empty: a column of the row says it, or nothing does
+  std::size_t sigma = kNoColumn;  // of a table with one behind each column of values
 };
 
 // A column of which only rows with this text are used.

@@ -26,6 +26,7 @@ RowParser::RowParser(const InputFile& file, const CsvHeader& header, const CsvLa
   for (std::size_t i = 0; i < needed_.size(); ++i) needed_[i] = layout.is_number[i] ? kNumber : 0;
   for (const ValueGroup& group : layout.groups) {
     for (const std::size_t i : group.values) needed_[i] |= kMayLack;
+    if (group.sigma != kNoColumn) needed_[group.sigma] |= kMayLack;
   }
   if (layout.sigma != kNoColumn) needed_[layout.sigma] |= kMayLack;
   for (const std::size_t i : layout.channel_sigmas) needed_[i] |= kMayLack;

@@ -1,0 +1,169 @@
+#include "lobefit/io/csv/head/conventions.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lobefit/base/text.h"
+
+namespace lobefit {
+namespace {
+
+enum class Side { kNone, kMirror, kLight };
+
+template <std::size_t N>
+bool HoldsAny(std::string_view word, const std::array<std::string_view, N>& parts) {
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](std::string_view part) { return word.find(part) != std::string_view::npos; });
+}
+
+// Parts of words, so that endings and letters with accents do not matter.
+constexpr std::array<std::string_view, 9> kMirror = {"forward", "specular", "mirror",    "spiegel", "glanz",
+                                                     "vorw",    "culaire",  "speculare", "miroir"};
+constexpr std::array<std::string_view, 8> kLight = {"backscatter", "backward", "retro",  "ckw",
+                                                    "source",      "lamp",     "quelle", "hotspot"};
+constexpr std::array<std::string_view, 3> kAzimuth = {"azim", "acimut", "\xcf\x86"};
+constexpr std::array<std::string_view, 10> kViewer = {"scatter",     "detector",        "viewing",   "receiver",
+                                                      "observation", "detektor",        "streuwink", "beobach",
+                                                      "diffus",      "reflexionswinkel"};
+constexpr std::array<std::string_view, 4> kIncident = {"incident", "incoming", "einfall", "incidence"};
+
+Side SideOf(std::string_view word) {
+  return HoldsAny(word, kMirror) ? Side::kMirror : HoldsAny(word, kLight) ? Side::kLight : Side::kNone;
+}
+
+// 0 or 180 degrees, however the unit is written behind it.
+std::optional<double> HalfTurnOf(std::string_view word) {
+  if (word == "zero" || word == "null") return 0.0;
+  std::size_t digits = 0;
+  while (digits < word.size() &&
+         (word[digits] == '.' || word[digits] == '-' || (word[digits] >= '0' && word[digits] <= '9')))
+    ++digits;
+  const std::optional<double> number = ParseDouble(word.substr(0, digits));
+  if (!number || (*number != 0 && *number != 180 && *number != -180)) return std::nullopt;
+  return *number;
+}
+
+// Parts of the sentence between commas, brackets and stops, each as its words in small letters.
+std::vector<std::vector<std::string>> ClausesOf(std::string_view text) {
+  std::vector<std::vector<std::string>> clauses(1);
+  std::string word;
+  const auto end_word = [&] {
+    if (!word.empty()) clauses.back().push_back(std::move(word));
+    word.clear();
+  };
+  const std::string lower = ToLower(text);
+  for (std::size_t i = 0; i < lower.size(); ++i) {
+    const char c = lower[i];
+    const bool stop = c == '.' && (i + 1 == lower.size() || lower[i + 1] == ' ');
+    if (stop || std::string_view(",;()[]").find(c) != std::string_view::npos) {
+      end_word();
+      if (!clauses.back().empty()) clauses.emplace_back();
+    } else if (std::string_view(" \t=:'\"").find(c) != std::string_view::npos) {
+      end_word();
+    } else {
+      word += c;
+    }
+  }
+  end_word();
+  return clauses;
+}
+
+bool IsFrom(std::string_view word) {
+  static constexpr std::array<std::string_view, 8> kFrom = {"from",   "von",   "vom",   "ab",
+                                                            "depuis", "dalla", "desde", "dal"};
+  return std::find(kFrom.begin(), kFrom.end(), word) != kFrom.end();
+}
+
+// The side that azimuth 0 lies on: of each word for a side by the 0 or 180 next to it, or by a "from" before it.
+std::vector<Side> SidesOfZero(const std::vector<std::string>& words) {
+  std::vector<Side> sides;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const Side side = SideOf(words[i]);
+    if (side == Side::kNone || (i + 1 < words.size() && words[i + 1] == "plane")) continue;
+    std::optional<double> nearest;
+    std::size_t distance = words.size();
+    for (std::size_t k = 0; k < words.size(); ++k) {
+      const std::optional<double> number = HalfTurnOf(words[k]);
+      const std::size_t away = k > i ? k - i : i - k;
+      if (number && away < distance) nearest = number, distance = away;
+    }
+    if (nearest) {
+      sides.push_back(*nearest == 0 ? side : side == Side::kMirror ? Side::kLight : Side::kMirror);
+      continue;
+    }
+    constexpr std::size_t kNear = 4;
+    for (std::size_t k = i - std::min(i, kNear); k < i; ++k) {
+      if (IsFrom(words[k])) sides.push_back(side);
+    }
+  }
+  return sides;
+}
+
+bool ReadAzimuthZero(std::size_t line, const std::vector<std::vector<std::string>>& clauses, CsvKeys* keys) {
+  std::vector<Side> sides;
+  std::vector<std::string> all;
+  for (const std::vector<std::string>& clause : clauses) {
+    for (const Side side : SidesOfZero(clause)) sides.push_back(side);
+    all.insert(all.end(), clause.begin(), clause.end());
+  }
+  if (sides.empty()) sides = SidesOfZero(all);
+  if (sides.empty() || std::count(sides.begin(), sides.end(), sides[0]) != static_cast<std::ptrdiff_t>(sides.size()))
+    return false;
+  keys->incident_sense = sides[0] == Side::kMirror ? IncidentSense::kPropagation : IncidentSense::kTowardsSource;
+  if (sides[0] == Side::kMirror) {
+    keys->remarks.push_back("line " + std::to_string(line) +
+                            ": azimuths count from the mirror's side, as the line says; --incident towards "
+                            "reads them from the light's");
+  }
+  return true;
+}
+
+// What the viewer's angles are related to: "relative to", "measured from", "bezogen auf", "par rapport a".
+bool ReadViewerZero(std::size_t line, const std::vector<std::string>& words, CsvKeys* keys) {
+  static constexpr std::array<std::string_view, 9> kRelation = {"relative", "respect", "relativ",  "bezogen", "gegen",
+                                                                "rapport",  "relatif", "rispetto", "respecto"};
+  if (std::none_of(words.begin(), words.end(), [](const std::string& word) { return HoldsAny(word, kViewer); }))
+    return false;
+  if (std::find(words.begin(), words.end(), "not") != words.end()) return false;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!IsFrom(words[i]) && !HoldsAny(words[i], kRelation)) continue;
+    constexpr std::size_t kNear = 4;
+    for (std::size_t k = i + 1; k < std::min(words.size(), i + 1 + kNear); ++k) {
+      if (HoldsAny(words[k], kMirror)) {
+        keys->viewer_zero = ViewerZero::kMirror;
+        keys->remarks.push_back("line " + std::to_string(line) +
+                                ": the viewer's angles count from the mirror direction, as the line says; --columns "
+                                "theta_o=NAME reads them from the normal");
+        return true;
+      }
+      if (HoldsAny(words[k], kIncident)) {
+        keys->viewer_zero = ViewerZero::kIncidentBeam;
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool ReadConvention(std::size_t line, std::string_view text, CsvKeys* keys) {
+  constexpr std::size_t kMostLetters = 300;  // more are a description
+  if (text.size() > kMostLetters || text.size() < 8) return false;
+  const std::vector<std::vector<std::string>> clauses = ClausesOf(text);
+  const auto is_azimuth = [](const std::string& word) {
+    return HoldsAny(word, kAzimuth) || word == "phi" || word == "raa" || word == "dphi";
+  };
+  for (const std::vector<std::string>& clause : clauses) {
+    if (std::any_of(clause.begin(), clause.end(), is_azimuth)) return ReadAzimuthZero(line, clauses, keys);
+  }
+  for (const std::vector<std::string>& clause : clauses) {
+    if (ReadViewerZero(line, clause, keys)) return true;
+  }
+  return false;
+}
+
+}  // namespace lobefit

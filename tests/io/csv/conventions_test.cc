@@ -1,0 +1,98 @@
+// Sentences about where angles count from, and angles that are related to another direction than the normal.
+#include <cmath>
+
+#include "tests/io/csv/read_csv.h"
+
+#include "lobefit/math/directions.h"
+
+namespace lobefit {
+namespace {
+
+// Light at 30 degrees, viewer at 40 degrees and azimuth 20 of the file.
+const std::string kRow = "theta_i,theta_r,relative azimuth,brdf\n30,40,20,1\n";
+
+// Cosine of the azimuth between the two directions.
+double CosBetween(const Measurement& m) {
+  const Vec3 wi = m.samples.wi(0), wo = m.samples.wo(0);
+  return (wi.x * wo.x + wi.y * wo.y) / (std::hypot(wi.x, wi.y) * std::hypot(wo.x, wo.y));
+}
+
+TEST(CsvConventions, AzimuthZeroAtTheMirror) {
+  for (const char* line :
+       {"# azimuth 0 is the specular direction", "# The azimuth is counted from the forward direction.",
+        "# Azimut 0° liegt in Vorwärtsrichtung (Spiegelrichtung)", "# azimut 0 = direction spéculaire",
+        "# phi = 180 is backscatter, phi = 0 forward", "# relative azimuth: 180 deg towards the light source"}) {
+    const Measurement m = ReadText(std::string(line) + "\n" + kRow);
+    EXPECT_NEAR(CosBetween(m), -std::cos(DegreesToRadians(20)), 1e-12) << line;
+    EXPECT_TRUE(HasRemark(m, "line 1: azimuths count from the mirror's side")) << line;
+  }
+}
+
+TEST(CsvConventions, AzimuthZeroAtTheLight) {
+  for (const char* line : {"# phi = 0 is the backscatter (retro) direction, phi = 180 the specular one",
+                           "# azimuths clockwise from the plane of incidence; forward scattering at 180",
+                           "# Azimut 180° ist die Glanzrichtung", "# azimuth of the sample's grain: 0 deg",
+                           // What contradicts itself changes nothing.
+                           "# azimuth 0 is forward, azimuth 0 is backward"}) {
+    const Measurement m = ReadText(std::string(line) + "\n" + kRow);
+    EXPECT_NEAR(CosBetween(m), std::cos(DegreesToRadians(20)), 1e-12) << line;
+  }
+}
+
+TEST(CsvConventions, OptionsGoBeforeSentences) {
+  ReadOptions options;
+  options.incident_sense = IncidentSense::kTowardsSource;
+  const Measurement m = ReadText("# azimuth 0 is the specular direction\n" + kRow, options);
+  EXPECT_NEAR(CosBetween(m), std::cos(DegreesToRadians(20)), 1e-12);
+}
+
+// The viewer's angle from the normal, on the mirror's side, in degrees.
+double ViewerDeg(const Measurement& m) { return RadiansToDegrees(std::atan2(-m.samples.wo_x[0], m.samples.wo_z[0])); }
+
+TEST(CsvConventions, ViewerAnglesFromTheMirrorDirection) {
+  const std::string row = "AOI,scatter angle,brdf\n30,12,1\n";
+  EXPECT_NEAR(ViewerDeg(ReadText(row)), 12, 1e-9);
+  for (const char* line :
+       {"# scatter angles are relative to the specular direction", "# detector angle measured from the specular beam",
+        "# Streuwinkel bezogen auf den Glanzwinkel"}) {
+    EXPECT_NEAR(ViewerDeg(ReadText(std::string(line) + "\n" + row)), 42, 1e-9) << line;
+  }
+  EXPECT_NEAR(ViewerDeg(ReadText("# scatter angles are measured from the surface normal\n" + row)), 12, 1e-9);
+  EXPECT_NE(MessageOf("# scatter angle is measured from the incident beam\n" + row).find("--columns \"bistatic="),
+            std::string::npos);
+}
+
+TEST(CsvConventions, BistaticAndDeviationAngles) {
+  EXPECT_NEAR(ViewerDeg(ReadText("AOI,bistatic angle,brdf\n30,72,1\n")), 42, 1e-9);
+  EXPECT_NEAR(ViewerDeg(ReadText("AOI,bistatic angle,brdf\n30,10,1\n")), -20, 1e-9);
+  EXPECT_NEAR(ViewerDeg(ReadText("AOI,deviation angle,brdf\n30,108,1\n")), 42, 1e-9);
+  // Beside the angle that it follows from it is not needed.
+  EXPECT_NEAR(ViewerDeg(ReadText("AOI,theta_r,deviation angle,brdf\n30,42,108,1\n")), 42, 1e-9);
+  EXPECT_NE(MessageOf("theta_i,theta,psi,brdf\n30,42,10,1\n").find("'psi'"), std::string::npos);
+}
+
+TEST(CsvConventions, UncertaintiesBehindTheirValues) {
+  const Measurement m = ReadText("theta_r,AOI=10,u,AOI=30,u\n20,2,0.1,3,0.3\n40,4,0.4,5,0.5\n");
+  ASSERT_EQ(m.samples.size(), 4U);
+  ASSERT_EQ(m.samples.sigma.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double value = m.samples.values[0][i];
+    EXPECT_NEAR(m.samples.sigma[i], value == 2 ? 0.1 : value == 3 ? 0.3 : value == 4 ? 0.4 : 0.5, 1e-12);
+  }
+  EXPECT_EQ(ReadText("theta_r,AOI=10,AOI=10 err,AOI=30,AOI=30 err\n20,2,0.1,3,0.3\n").samples.sigma.size(), 2U);
+  EXPECT_NE(MessageOf("theta_r,AOI=10,u,AOI=30\n20,2,0.1,3\n").find("only 1 of 2 columns"), std::string::npos);
+  EXPECT_NE(MessageOf("theta_r,AOI=10,err AOI=30,AOI=30,err AOI=10\n20,2,0.1,3,0.3\n").find("of another angle"),
+            std::string::npos);
+}
+
+TEST(CsvConventions, RelatedToAWhiteStandard) {
+  for (const char* name : {"Reflectance factor (rel. to Spectralon)", "reflectance relative to white standard",
+                           "radiance factor β", "BRF vs PTFE"}) {
+    const Measurement m = ReadText(std::string("theta_i,theta_r,") + name + "\n30,40,0.5\n");
+    EXPECT_NEAR(m.samples.values[0][0], 0.5 / kPi, 1e-12) << name;
+  }
+  EXPECT_NEAR(ReadText("theta_i,theta_r,ARS (1/sr)\n30,60,0.25\n").samples.values[0][0], 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace lobefit
