@@ -111,8 +111,8 @@ void JetsSameOperations(benchmark::State& state) {
   WithJets(state, [&](const Vec3& i, const Vec3& o) {
     Jet cos_d;
     Jet* const none = nullptr;
-    return jets::GgxSpecular<false, jets::Masking::kSmithSeparable>(p, Jet(i.x), Jet(i.y), Jet(i.z), Jet(o.x), Jet(o.y),
-                                                                    Jet(o.z), &cos_d, none);
+    return jets::GgxSpecular<false, Masking::kSmithSeparable>(p, Jet(i.x), Jet(i.y), Jet(i.z), Jet(o.x), Jet(o.y),
+                                                              Jet(o.z), &cos_d, none);
   });
 }
 

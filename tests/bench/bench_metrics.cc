@@ -69,7 +69,7 @@ std::pair<double, double> Compare(const LitSphere& table, const LitSphere& fit) 
   return {10 * std::log10(n / std::max(square, 1e-12)), difference / n};
 }
 
-Look Render(const BrdfFunction& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color) {
+Look Render(const ShownBrdf& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color) {
   return {LightSphere(brdf, to_color, 3, kLightSize),
           SkySphere(brdf, lobe, to_color, 3, kSkySamples, HardwareThreads())};
 }

@@ -60,7 +60,9 @@ TEST(Page, AProfileIsDrawn) {
   const Measurement measurement = test::Measure(material, test::GoniometerPairs(false), 0.03, false);
   EXPECT_THAT(IdsOf(material, measurement), Not(Contains("profile")));
   EXPECT_THAT(IdsOf(material, measurement), Contains("fresnel"));
-  const FittedParameter gamma = {{3.0}, {0.1}, {0.1}, {3.0}, true, false};
+  FittedParameter gamma;
+  gamma.values = gamma.freedom = {3.0};
+  gamma.standard_error = gamma.standard_error_clustered = {0.1};
   material.model.lobes[0].ndf = Ndf::kStudentEllipsoid;
   material.parameters.insert(material.parameters.begin() + 5, gamma);
   EXPECT_THAT(IdsOf(material, measurement), Contains("profile"));
