@@ -118,7 +118,7 @@ class Ladder {
     all_ = SomeChannels(measurement.samples, chosen);
     const std::vector<std::vector<double>> black(all_.values.size(), std::vector<double>(all_.size(), 0.0));
     exact_ = kRounding * kRounding *
-             SumSquares(simplest_.metric, simplest_.noise, simplest_.weighting, true, all_, black).MeanSquare();
+             SumSquares(simplest_.metric, simplest_.noise, Weighting::kCells, true, all_, black).MeanSquare();
     for (std::size_t k = 0; k < folds; ++k) {
       std::vector<std::size_t> training, test;
       for (const std::size_t i : chosen) (dealt[incidences.group[i]] == k ? test : training).push_back(i);

@@ -11,7 +11,7 @@ namespace lobefit {
 namespace {
 
 // Corners where an edge's image in the slope plane bends.
-constexpr int kPiecesOfSide = 8, kPiecesOfHorizon = 8, kDiscCorners = 32;
+constexpr int kPiecesOfSide = 16, kPiecesOfHorizon = 16, kDiscCorners = 64;
 // Points between a region's middle and its rim: two of each ring.
 constexpr int kRings = 6;
 constexpr double kGauss = 0.5773502691896258;

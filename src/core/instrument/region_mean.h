@@ -20,7 +20,7 @@ struct DirectionRegion {
   std::vector<std::array<double, 3>> corners;
   double cosine = 0;  // integral of w'.w over it
 };
-// A disc, as a polygon of 32 corners of the same area.
+// A disc, as a polygon of 64 corners of the same area.
 DirectionRegion DiscRegion(double half_angle);
 // A flat rectangle that faces the sample, with half angles along the meridian and across it; at w = z, along x and y.
 DirectionRegion RectangleRegion(double along, double across);
