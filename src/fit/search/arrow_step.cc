@@ -82,6 +82,27 @@ Eigen::VectorXd Minimum(const ArrowMatrix& h, const Eigen::VectorXd& gradient, c
   return minimum;
 }
 
+Eigen::VectorXd Product(const ArrowMatrix& h, const Eigen::VectorXd& x) {
+  const auto part = [](const Eigen::VectorXd& of, const std::vector<int>& coordinates) {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(coordinates.size()));
+    for (std::size_t i = 0; i < coordinates.size(); ++i) values(static_cast<Eigen::Index>(i)) = of(coordinates[i]);
+    return values;
+  };
+  Eigen::VectorXd product(x.size());
+  const Eigen::VectorXd x_border = part(x, h.shape.border);
+  Eigen::VectorXd border = h.border * x_border;
+  for (std::size_t c = 0; c < h.own.size(); ++c) {
+    const Eigen::VectorXd x_own = part(x, h.shape.own[c]);
+    border += h.across[c] * x_own;
+    const Eigen::VectorXd own = h.own[c] * x_own + h.across[c].transpose() * x_border;
+    for (std::size_t i = 0; i < h.shape.own[c].size(); ++i)
+      product(h.shape.own[c][i]) = own(static_cast<Eigen::Index>(i));
+  }
+  for (std::size_t i = 0; i < h.shape.border.size(); ++i)
+    product(h.shape.border[i]) = border(static_cast<Eigen::Index>(i));
+  return product;
+}
+
 }  // namespace
 
 Eigen::VectorXd BoundedStep(const ArrowMatrix& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
@@ -94,9 +115,10 @@ Eigen::VectorXd BoundedStep(const ArrowMatrix& hessian, const Eigen::VectorXd& g
     held[static_cast<std::size_t>(i)] = 1;
     x(i) = low(i);
   }
-  return StepByActiveSet(low, high, held, x, [&](const std::vector<char>& fixed, const Eigen::VectorXd& at) {
-    return Minimum(hessian, gradient, fixed, at);
-  });
+  return StepByActiveSet(
+      low, high, gradient, held, x,
+      [&](const std::vector<char>& fixed, const Eigen::VectorXd& at) { return Minimum(hessian, gradient, fixed, at); },
+      [&](const Eigen::VectorXd& at) { return Product(hessian, at); });
 }
 
 }  // namespace lobefit

@@ -183,8 +183,9 @@ Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& hessian, const Eigen::VectorX
     }
     return h.ldlt().solve(right);
   };
-  return StepByActiveSet(low, high, std::vector<char>(static_cast<std::size_t>(n), 0), Eigen::VectorXd::Zero(n),
-                         minimum);
+  return StepByActiveSet(low, high, gradient, std::vector<char>(static_cast<std::size_t>(n), 0),
+                         Eigen::VectorXd::Zero(n), minimum,
+                         [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return hessian * x; });
 }
 
 }  // namespace lobefit

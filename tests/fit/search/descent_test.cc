@@ -246,5 +246,39 @@ TEST(BoundedStep, IsTheMinimumOfTheQuadraticWithinTheBox) {
   EXPECT_EQ(BoundedStep(h, g, -far, far)(1), 0);
 }
 
+// Of coordinates that are all but proportional, several leave their bounds at once and some come back: the conditions of
+// Karush, Kuhn and Tucker hold at the end all the same, and the step goes down.
+TEST(BoundedStep, CoordinatesComeBackFromTheirBounds) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0, 1);
+  constexpr Eigen::Index kSize = 12;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Eigen::MatrixXd rows =
+        Eigen::MatrixXd::NullaryExpr(14, kSize, [&] { return normal(random); }) +
+        Eigen::VectorXd::NullaryExpr(14, [&] { return 5 * normal(random); }) * Eigen::RowVectorXd::Ones(kSize);
+    const Eigen::MatrixXd h = rows.transpose() * rows;
+    const Eigen::VectorXd g = Eigen::VectorXd::NullaryExpr(kSize, [&] { return 10 * normal(random); });
+    Eigen::VectorXd low(kSize), high(kSize);
+    for (Eigen::Index i = 0; i < kSize; ++i) {
+      low(i) = uniform(random) < 0.3 ? 0 : -uniform(random);
+      high(i) = uniform(random) < 0.3 ? 0 : uniform(random);
+    }
+    const Eigen::VectorXd x = BoundedStep(h, g, low, high), slope = h * x + g;
+    EXPECT_LE(0.5 * x.dot(h * x) + g.dot(x), 0) << trial;
+    for (Eigen::Index i = 0; i < kSize; ++i) {
+      ASSERT_GE(x(i), low(i)) << trial;
+      ASSERT_LE(x(i), high(i)) << trial;
+      if (low(i) == high(i)) continue;
+      if (x(i) > low(i)) {
+        EXPECT_LE(slope(i), 1e-8 * g.norm()) << trial << " " << i;
+      }
+      if (x(i) < high(i)) {
+        EXPECT_GE(slope(i), -1e-8 * g.norm()) << trial << " " << i;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lobefit
