@@ -152,8 +152,15 @@ TEST_P(EveryModel, EndsWhereNoCoordinateGains) {
       EXPECT_LE(u(k), objective.high(k));
       // Masking of tilted lobes has kinks, at which the derivative is one-sided.
       if (IsTilted(model.lobes[0].ndf)) continue;
-      EXPECT_LE(GainOf(objective, u, solution.cost, gram, gradient, k), 0.02 / static_cast<double>(objective.residuals))
-          << layout.coordinates()[static_cast<std::size_t>(k)].name;
+      const double most = 0.02 / static_cast<double>(objective.residuals);
+      if (GainOf(objective, u, solution.cost, gram, gradient, k) <= most) continue;
+      // The derivative promises more where the cost bends more than Gauss-Newton knows: what counts is the cost itself.
+      for (const double share : {1.0, 0.3, 0.1, 0.03, 0.01}) {
+        Eigen::VectorXd moved = u;
+        moved(k) = std::clamp(u(k) - share * gradient(k) / gram(k, k), objective.low(k), objective.high(k));
+        EXPECT_GE(objective.evaluate(moved, nullptr, nullptr), solution.cost * (1 - most))
+            << layout.coordinates()[static_cast<std::size_t>(k)].name << " " << share;
+      }
     }
   }
 }
