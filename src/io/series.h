@@ -19,8 +19,8 @@ struct FileSpec {
 // are keys.
 FileSpec ParseFileSpec(const std::string& text);
 
-// Reads each as ReadMeasurement does and pools them (measurement/prepare/pool.h); a folder stands for its files, by name.
-// Throws InputError for a folder without files, UsageError for the same file twice.
+// Reads each as ReadMeasurement does and pools them (measurement/prepare/pool.h); a folder stands for its files, by
+// name. Throws InputError for a folder without files, UsageError for the same file twice.
 Measurement ReadSeries(const std::vector<std::string>& specs, const ReadOptions& options);
 
 // The files that such names stand for, folders by all files in them: what no output may overwrite.

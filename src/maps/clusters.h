@@ -22,8 +22,8 @@ struct Clusters {
 };
 
 // k-means [Lloyd 1982] over the features that are known, from the best of several k-means++ starts [Arthur and
-// Vassilvitskii 2007] of fixed seed: the same for the same texels in the same order. Units: interquartile ranges. At most
-// `count` clusters; fewer where there are fewer different texels.
+// Vassilvitskii 2007] of fixed seed: the same for the same texels in the same order. Units: interquartile ranges. At
+// most `count` clusters; fewer where there are fewer different texels.
 Clusters FindClusters(const std::vector<Features>& texels, std::size_t count);
 
 }  // namespace lobefit

@@ -23,9 +23,10 @@ struct SharedNumbers {
   std::vector<Group> groups;  // one a cluster; empty: nothing is shared
 };
 
-// The numbers of greatest likelihood, all else of a texel free and its level of noise profiled, over at most 4096 texels
-// on a grid: Newton's method from the medians of the texels' own numbers. Clusters are those of the same texels' own
-// numbers (clusters.h). Errors: sandwich with texels as clusters. Reads the stack once; memory: the values of the grid.
+// The numbers of greatest likelihood, all else of a texel free and its level of noise profiled, over at most 4096
+// texels on a grid: Newton's method from the medians of the texels' own numbers. Clusters are those of the same texels'
+// own numbers (clusters.h). Errors: sandwich with texels as clusters. Reads the stack once; memory: the values of the
+// grid.
 SharedNumbers EstimateShared(const Stack& stack, const MapRecipe& recipe, const FittedLights& lights, int threads);
 
 // Every digit of them; nullopt where the file is not there or not whole.

@@ -25,7 +25,8 @@ struct FittedParameter {
   std::vector<double> standard_error_clustered;
   // Degrees of freedom of that error: 95 % within this quantile of Student's t. NaN where it is NaN.
   std::vector<double> freedom;
-  // The same of `standard_error`, whose errors are normal but where the drift of the gains was estimated. Empty: normal.
+  // The same of `standard_error`, whose errors are normal but where the drift of the gains was estimated. Empty:
+  // normal.
   std::vector<double> independent_freedom = {};
   bool free = true;
   bool at_bound = false;

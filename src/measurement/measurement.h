@@ -88,7 +88,8 @@ struct Measurement {
   // True where the file cannot express a dependence on azimuth (MERL, isotropic tables): the fit then takes an
   // isotropic model.
   bool isotropic = false;
-  // Isotropic by its format, but the sample lay still while one side swept the hemisphere: its anisotropy is in the rows.
+  // Isotropic by its format, but the sample lay still while one side swept the hemisphere: its anisotropy is in the
+  // rows.
   bool sample_at_rest = false;
   // The side whose directions were set one after the other while the other side swept: an incidence's samples share it.
   Beam listed_side = Beam::kLight;

@@ -35,8 +35,8 @@ struct EntryCalibration {
   double bias = 0, bias_error = 0;  // mean of value - truth and its standard error, outside unit
   double spread = 0;                // standard deviation of value - truth
   double mean_error = 0;            // root mean square of the standard errors
-  // With `stderr` and `stderr_clustered`, each with the fit's degrees of freedom: those of the first are infinite unless
-  // a drift was estimated.
+  // With `stderr` and `stderr_clustered`, each with the fit's degrees of freedom: those of the first are infinite
+  // unless a drift was estimated.
   IntervalCalibration independent, clustered;
 };
 

@@ -87,8 +87,8 @@ std::vector<double> KnotsOf(const Lobe& lobe) {
   return grid == nullptr ? std::vector<double>{} : grid->spline()->knots();
 }
 
-// Largest relative difference of the fitted parameters that have an error: of the lobes' ellipses in slope space, of all
-// others against the larger of 1 and the truth.
+// Largest relative difference of the fitted parameters that have an error: of the lobes' ellipses in slope space, of
+// all others against the larger of 1 and the truth.
 double DifferenceFrom(const Truth& truth, const Material& material) {
   double largest = SlopeDifference(truth, material.Values());
   const std::vector<Parameter> parameters = Parameters(truth.model);

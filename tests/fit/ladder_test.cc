@@ -93,8 +93,8 @@ TEST(Ladder, NeverWorseThanOneLobeAndTheFirstOfTheTable) {
   }
 }
 
-// Several models hold exact data exactly: rounding is no reason for one with more parameters, and the fit is as exact as the
-// trial was.
+// Several models hold exact data exactly: rounding is no reason for one with more parameters, and the fit is as exact
+// as the trial was.
 TEST(Ladder, OfExactModelsTheOneWithFewestParameters) {
   SyntheticCase truth = Gray(Ndf::kGgx, 0.2, 0.2);
   truth.model.lobes[0].fresnel = Fresnel::kCurve;

@@ -97,8 +97,8 @@ TEST_P(EachLobe, DerivativesAreThoseOfTheCost) {
 }
 
 // The matrix and the errors against their definitions, with the model's derivatives by differences: sum w J^T J + bend
-// (J^T r)(J^T r)^T, and what the solution moves by, to first order, where one light after the other is left out, kJackknife
-// of the way from what its residual as it is says.
+// (J^T r)(J^T r)^T, and what the solution moves by, to first order, where one light after the other is left out,
+// kJackknife of the way from what its residual as it is says.
 class EachModel : public testing::TestWithParam<std::tuple<MapLobe, int>> {};
 INSTANTIATE_TEST_SUITE_P(Models, EachModel,
                          testing::Combine(testing::Values(MapLobe::kNone, MapLobe::kGgx, MapLobe::kGgxAnisotropic),

@@ -83,8 +83,8 @@ TEST(Experiment, AMisalignmentIsDrawnForEachTrial) {
   EXPECT_NEAR(std::sqrt(squares / 800) * 180 / kPi, 0.2, 0.02);
 }
 
-// Turned by half on its stage, a sample that stands crooked is fitted from both files without an error, if the alignment
-// is fitted.
+// Turned by half on its stage, a sample that stands crooked is fitted from both files without an error, if the
+// alignment is fitted.
 TEST(Experiment, ATurnedSampleIsASecondFile) {
   Experiment experiment = test::BrushedExperiment("misalignment-x=0.3,misalignment-y=-0.2");
   experiment.turned = true;

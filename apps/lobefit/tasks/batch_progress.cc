@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "lobefit/base/flat_json.h"
 #include "lobefit/base/text.h"
 #include "lobefit/batch/results/results.h"
+#include "lobefit/batch/run/flat_members.h"
 
 namespace lobefit {
 namespace {
@@ -15,9 +15,8 @@ namespace {
 // "describes its data" and the like where the document has a verdict, else the status.
 std::string ShareOf(const DoneRecord& done) {
   if (done.row.empty()) return NameOf(done.status);
-  FlatJson json(done.row);
-  while (json.Next()) {
-    if (json.name() == "verdict" && json.kind() == FlatJson::Kind::kString) return std::string(json.value());
+  for (const FlatMember& member : FlatMembers(done.row)) {
+    if (member.name == "verdict" && member.kind == FlatMember::Kind::kString) return member.value;
   }
   return NameOf(done.status);
 }

@@ -16,7 +16,8 @@ struct IndexOptions {
 };
 
 // Totals, failures with their messages, a gallery of lit spheres, a table to sort and filter, a scatter of any two
-// columns with intervals, links to documents and reports. `out` is the batch's folder, where the reports are looked for.
+// columns with intervals, links to documents and reports. `out` is the batch's folder, where the reports are looked
+// for.
 std::string IndexPage(const ResultTable& table, const std::filesystem::path& out, const IndexOptions& options);
 
 }  // namespace lobefit

@@ -21,8 +21,8 @@ struct ManifestNames {
 // Whether the text begins as a manifest does: its header has one of the columns `file`, `id` or an option's name.
 bool LooksLikeManifest(std::string_view text, const ManifestNames& names);
 
-// Files are relative to the manifest's folder, and a row may name several that are one measurement (list/series.h); an id
-// that is not given is the file as listed, or SeriesId, without its leading "../" or "/". Words of options stand in
+// Files are relative to the manifest's folder, and a row may name several that are one measurement (list/series.h); an
+// id that is not given is the file as listed, or SeriesId, without its leading "../" or "/". Words of options stand in
 // Task::options, an empty field gives none; columns of other names in Task::extra. Neither single files nor the options
 // are looked at. Throws InputError, with the line, for a manifest without rows or without the column `file`, a column
 // that is there twice or has a name of the results', a row of another length, an empty file, a series without files or

@@ -24,8 +24,8 @@ struct Task {
   std::string settings;
   std::vector<std::string> extra;  // of the columns that are passed through
   std::string place;               // where the task was listed, for messages: "work.csv, line 3"; not stored
-  // Of a series, whose files are one measurement: their names, perhaps with keys: "scan_10.csv:theta_i=10". Empty: `path`
-  // is the only file.
+  // Of a series, whose files are one measurement: their names, perhaps with keys: "scan_10.csv:theta_i=10". Empty:
+  // `path` is the only file.
   std::vector<std::string> members = {};
 };
 

@@ -12,11 +12,11 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/flat_json.h"
 #include "lobefit/base/parallel.h"
 #include "lobefit/base/text.h"
 #include "lobefit/batch/list/csv_text.h"
 #include "lobefit/batch/results/result_row.h"
+#include "lobefit/batch/run/flat_members.h"
 
 namespace lobefit {
 namespace {
@@ -80,12 +80,10 @@ BlockColumns ColumnsOf(const ResultTable& table, std::size_t block) {
   ForBlock(table, block, [&](const ResultTable::Row& row) {
     const std::string_view text = reader.Read(*row.done);
     if (text.empty()) return;
-    FlatJson json(text);
     std::size_t hint = 0;
-    while (json.Next()) {
-      columns.names.Add(json.name(), &hint);
-      if (json.name() == "verdict" && json.kind() == FlatJson::Kind::kString)
-        ++columns.verdicts[std::string(json.value())];
+    for (const FlatMember& member : FlatMembers(text)) {
+      columns.names.Add(member.name, &hint);
+      if (member.name == "verdict" && member.kind == FlatMember::Kind::kString) ++columns.verdicts[member.value];
     }
   });
   return columns;
@@ -170,8 +168,8 @@ const std::vector<std::string>& RowTexts::Of(const ResultTable::Row& row) {
   put("key", row.done->key);
   const std::string_view result = reader_.Read(*row.done);
   if (result.empty()) return texts_;
-  FlatJson json(result);
-  while (json.Next()) put(json.name(), json.kind() == FlatJson::Kind::kNull ? "" : json.value());
+  for (const FlatMember& member : FlatMembers(result))
+    put(member.name, member.kind == FlatMember::Kind::kNull ? "" : std::string_view(member.value));
   return texts_;
 }
 

@@ -13,8 +13,8 @@ struct SpherePicture {
   bool measured = false;  // the measured sphere stands left of the fitted one
 };
 
-// Spheres of 64 pixels, in 6 bits a channel. A measured one only of isotropic measurements that speak for nearly the whole
-// sphere, as in reports; the same exposure for both.
+// Spheres of 64 pixels, in 6 bits a channel. A measured one only of isotropic measurements that speak for nearly the
+// whole sphere, as in reports; the same exposure for both.
 SpherePicture DrawSpheres(const Material& material, const Measurement& measurement);
 
 }  // namespace lobefit

@@ -42,10 +42,10 @@ class Journal {
   // Appends `line`, which has no line end, with one call of the system; it outlives this process, but perhaps not a
   // power cut. From any thread. Throws OutputError, with nothing of the line left in the file where that is possible.
   void Append(std::string_view line);
-  // Appends `line` once the files that it speaks of are in place; at once where there are none. That happens in groups, of what came within a tenth of
-  // a second or while the group before was on its way, and of at most 64: files are brought to the disk and named, lines
-  // written and brought to the disk. What a death takes is absent as a whole, line and files. Waits while a whole group
-  // is waiting. From any thread. Throws OutputError, also for an earlier group.
+  // Appends `line` once the files that it speaks of are in place; at once where there are none. That happens in groups,
+  // of what came within a tenth of a second or while the group before was on its way, and of at most 64: files are
+  // brought to the disk and named, lines written and brought to the disk. What a death takes is absent as a whole, line
+  // and files. Waits while a whole group is waiting. From any thread. Throws OutputError, also for an earlier group.
   void Commit(std::string line, FileGroup files);
   // Brings all to the disk. Throws OutputError, also for an earlier group. Nothing may be committed after it.
   void Close();

@@ -79,7 +79,8 @@ class RowReader {
   RowReader(const RowReader&) = delete;
   RowReader& operator=(const RowReader&) = delete;
 
-  // DoneRecord::row and picture; valid until the next call. Throw InputError where the segment does not hold it any more.
+  // DoneRecord::row and picture; valid until the next call. Throw InputError where the segment does not hold it any
+  // more.
   std::string_view Read(const DoneRecord& done);
   std::string_view ReadPicture(const DoneRecord& done);
 

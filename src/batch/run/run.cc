@@ -95,8 +95,8 @@ class Runner {
     return record;
   }
 
-  // A task whose results cannot be written, or are lost on their way to the disk, did not kill its process, and must not
-  // be taken for one that did.
+  // A task whose results cannot be written, or are lost on their way to the disk, did not kill its process, and must
+  // not be taken for one that did.
   void Finish(const Task& task, DoneRecord* record, const std::function<Outcome()>& attempt) {
     Outcome outcome;
     try {

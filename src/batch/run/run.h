@@ -60,8 +60,8 @@ Plan MakePlan(const WorkList& list, const Records& records, const RunOptions& op
 // Called after each task, from any thread; the record's row is there for the time of the call.
 using Done = std::function<void(const DoneRecord&)>;
 
-// Runs the plan. When it returns all is on the disk. Ends early, with what runs finished and written down, once `stop` is set. Throws OutputError where
-// results cannot be written.
+// Runs the plan. When it returns all is on the disk. Ends early, with what runs finished and written down, once `stop`
+// is set. Throws OutputError where results cannot be written.
 void RunPlan(const Plan& plan, const RunOptions& options, const std::filesystem::path& out,
              const std::atomic<bool>& stop, const Work& work, const Done& done);
 

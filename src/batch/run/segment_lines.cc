@@ -5,12 +5,13 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/flat_json.h"
 #include "lobefit/base/text.h"
+#include "lobefit/batch/run/flat_members.h"
 
 namespace lobefit {
 namespace {
@@ -65,14 +66,14 @@ std::vector<FileStamp> StampsFrom(std::string_view text) {
 }
 
 // The first member says what a line is.
-void ParseDone(FlatJson* json, DoneRecord* done) {
-  constexpr int kMembers = 12;
-  done->id = json->value();
+void ParseDone(const std::vector<FlatMember>& members, DoneRecord* done) {
+  constexpr int kMembers = 13;
   int seen = 0;
-  while (json->Next()) {
-    const std::string_view name = json->name(), value = json->value();
+  for (const auto& [name, value, kind] : members) {
     ++seen;
-    if (name == "key") {
+    if (name == "done") {
+      done->id = value;
+    } else if (name == "key") {
       done->key = value;
     } else if (name == "settings") {
       done->settings = value;
@@ -103,14 +104,6 @@ void ParseDone(FlatJson* json, DoneRecord* done) {
   if (seen != kMembers) throw InputError("members are missing");
 }
 
-// Any order of members.
-std::map<std::string, std::string> Members(FlatJson* json) {
-  std::map<std::string, std::string> members;
-  do members.emplace(json->name(), json->value());
-  while (json->Next());
-  return members;
-}
-
 // Where the row of a line lies in it; empty where it has none.
 std::string_view RowOf(std::string_view line) {
   const std::size_t at = line.find(kRow);
@@ -136,11 +129,11 @@ void ParseLine(std::string_view line, std::uint64_t offset, SegmentLines* parsed
   const std::string_view row = RowOf(line);
   const std::string head =
       row.empty() ? std::string(line) : std::string(line.substr(0, line.size() - row.size() - kRow.size())) + "}";
-  FlatJson json(head);
-  if (!json.Next()) return;
-  if (json.name() == "done") {
+  const std::vector<FlatMember> in_order = FlatMembers(head);
+  if (in_order.empty()) return;
+  if (in_order[0].name == "done") {
     DoneRecord done;
-    ParseDone(&json, &done);
+    ParseDone(in_order, &done);
     done.row_bytes = row.size();
     done.row_offset = row.empty() ? 0 : offset + static_cast<std::uint64_t>(row.data() - line.data());
     done.picture_offset = parsed->picture_offset;
@@ -150,7 +143,8 @@ void ParseLine(std::string_view line, std::uint64_t offset, SegmentLines* parsed
     parsed->done.push_back(std::move(done));
     return;
   }
-  const std::map<std::string, std::string> members = Members(&json);
+  std::map<std::string, std::string> members;
+  for (const FlatMember& member : in_order) members.emplace(member.name, member.value);
   if (members.contains("ended")) {
     parsed->ended.push_back(members.at("ended"));
   } else if (members.contains("start")) {

@@ -20,7 +20,8 @@
 
 namespace lobefit {
 
-// Of any family but kProfile and kStudent. The parameter is alpha > 0, or b in (0, 1) for Kagiwada-Kalaba (b -> 0 isotropic, b -> 1 a flat surface).
+// Of any family but kProfile and kStudent. The parameter is alpha > 0, or b in (0, 1) for Kagiwada-Kalaba (b -> 0
+// isotropic, b -> 1 a flat surface).
 struct AxialNdf {
   Family family = Family::kGgx;
   double parameter = 1;

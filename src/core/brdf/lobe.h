@@ -14,8 +14,8 @@
 
 namespace lobefit {
 
-// The shape of a lobe: its ellipse in slope space and, for profiles and Student's, what goes with their coefficients. To
-// make one of a profile takes a millisecond; it serves all samples.
+// The shape of a lobe: its ellipse in slope space and, for profiles and Student's, what goes with their coefficients.
+// To make one of a profile takes a millisecond; it serves all samples.
 struct LobeShape {
   LobeShape() = default;
   LobeShape(const SlopeCoordinates& ellipse) : slope(ellipse) {}  // NOLINT: every other family is its ellipse
@@ -42,8 +42,8 @@ void SpecularLobe(const DirectionArrays& directions, const Lobe& lobe, const Lob
 double SpecularLobe(const Vec3& wi, const Vec3& wo, const Lobe& lobe, const LobeShape& shape, double* cos_d,
                     double* gradient);
 
-// The normal distribution of a lobe. `jacobian`: d(distribution's parameters) / d(slope coordinates, then the profile's),
-// row-major, parameters() rows of ShapeParameters(lobe); null skips it.
+// The normal distribution of a lobe. `jacobian`: d(distribution's parameters) / d(slope coordinates, then the
+// profile's), row-major, parameters() rows of ShapeParameters(lobe); null skips it.
 std::unique_ptr<NormalDistribution> DistributionOf(const Lobe& lobe, const LobeShape& shape,
                                                    std::vector<double>* jacobian);
 

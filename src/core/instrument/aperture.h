@@ -21,8 +21,8 @@ enum class ApertureMean {
 struct Aperture {
   double source = 0, detector = 0;
   ApertureMean mean = ApertureMean::kFlux;
-  // Above 0: the detector is a flat rectangle that faces the sample, with the half angle `detector` along the meridian and
-  // this one across it.
+  // Above 0: the detector is a flat rectangle that faces the sample, with the half angle `detector` along the meridian
+  // and this one across it.
   double across = 0;
   bool any() const { return source > 0 || detector > 0; }
   bool operator==(const Aperture&) const = default;

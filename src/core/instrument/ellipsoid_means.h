@@ -20,9 +20,10 @@ struct EllipsoidMeans {
 
 // One disc: the integral is taken over its image in the frame in which the lobe is a cosine lobe (ggx_mean-inl.h), so
 // that it costs the same for any width of either; the nodes are doubled until values agree to 1e-13. Where masking is
-// clamped on part of the disc the sum is split along the clamp's end, at which derivatives jump. Both: that, averaged over the smaller disc, where a lobe much
-// narrower than it ends at a limit of nodes, with errors as large as those of the fast form. The parts of the discs
-// below the horizon do not count in `fr` and `flux`. A point: the values themselves.
+// clamped on part of the disc the sum is split along the clamp's end, at which derivatives jump. Both: that, averaged
+// over the smaller disc, where a lobe much narrower than it ends at a limit of nodes, with errors as large as those of
+// the fast form. The parts of the discs below the horizon do not count in `fr` and `flux`. A point: the values
+// themselves.
 EllipsoidMeans QuadratureMeans(const Ellipsoid& ellipsoid, const ConductorIndex& index, const Vec3& wo, const Vec3& wi,
                                const Aperture& aperture);
 

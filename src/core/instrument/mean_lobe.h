@@ -38,12 +38,12 @@ inline constexpr double kMostRelativeWidth = 2;
 
 // `alpha`: the narrowest width in slope space that the lobe may get; `cos_d`: the smallest cosine of the difference
 // angle of the samples. The cubature keeps 1e-3 of the lobe's peak. Throws InputError where the discs are wider than
-// kMostRelativeWidth lobes, or a detector is rectangular, and there is no closed form. `aperture` must not be a point; a
-// rectangular detector goes with a source that is one, and the flux mean.
+// kMostRelativeWidth lobes, or a detector is rectangular, and there is no closed form. `aperture` must not be a point;
+// a rectangular detector goes with a source that is one, and the flux mean.
 LobeMeanRule MakeLobeMeanRule(const Lobe& lobe, const Aperture& aperture, double alpha, double cos_d);
 
-// The rule with as many points over discs of other half angles: what a fit that moves them minimises stays one function.
-// A disc that is a point stays one.
+// The rule with as many points over discs of other half angles: what a fit that moves them minimises stays one
+// function. A disc that is a point stays one.
 LobeMeanRule WithDiscs(const LobeMeanRule& rule, const Aperture& aperture);
 
 // factor[i]: what a constant f_r reads over the rule's region (ConstantMean), 1 where no horizon cuts it.

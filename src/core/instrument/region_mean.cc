@@ -60,8 +60,8 @@ std::vector<Vec3> AboveHorizon(const std::vector<Vec3>& corners) {
   return above;
 }
 
-// Slopes of the half vectors of wi and the corners, in units in which the lobe is round and of width 1, and the integral
-// of its distribution over their polygon.
+// Slopes of the half vectors of wi and the corners, in units in which the lobe is round and of width 1, and the
+// integral of its distribution over their polygon.
 double SlopeIntegral(const Vec3& wi, const std::vector<Vec3>& corners, const SlopeCoordinates& shape,
                      double* gradient) {
   const double a = std::exp(shape.v[2]), b = shape.v[3], c = std::exp(shape.v[4]);

@@ -31,11 +31,11 @@ double ConstantMean(const Vec3& w, const DirectionRegion& region);
 
 // Flux mean of D G2 / (4 cos_i cos_o) over the region about wo, light at the point wi: the integral of the slope
 // distribution over the region's image times a D-weighted mean of the rest over points of it, denser where the lobe is
-// high. What is below the horizon reflects nothing. By reciprocity the mean over a region about the light is that with wi
-// and wo exchanged. With w the region's half width over the lobe's, half_angle / (2 alpha cos_d): error below 1e-3 of the
-// value for w up to 10 on whole regions, 3e-3 for w up to 5 on cut ones, and a tenth at 20, where both directions graze.
-// argument and gradients as GgxMeanLobe; gradients null together. The points follow the lobe, which gradients leave out:
-// they are off by the error of the value over alpha. wi.z, wo.z > 0.
+// high. What is below the horizon reflects nothing. By reciprocity the mean over a region about the light is that with
+// wi and wo exchanged. With w the region's half width over the lobe's, half_angle / (2 alpha cos_d): error below 1e-3
+// of the value for w up to 10 on whole regions, 3e-3 for w up to 5 on cut ones, and a tenth at 20, where both
+// directions graze. argument and gradients as GgxMeanLobe; gradients null together. The points follow the lobe, which
+// gradients leave out: they are off by the error of the value over alpha. wi.z, wo.z > 0.
 double GgxRegionMean(const Vec3& wi, const Vec3& wo, const SlopeCoordinates& shape, Masking masking,
                      const DirectionRegion& region, FresnelArgument kind, double* argument, double gradient[5],
                      double argument_gradient[5]);

@@ -16,8 +16,9 @@ struct SmithG2Gradient {
   double dLambda_o, dLambda_i, dlambda;
 };
 
-// G2 of two Lambdas >= 0 (the separable kinds: > -1) under a Smith masking (IsSmith); lambda in [0, 1] is read by the direction-correlated kinds only.
-// kDirection and kHeightDirection have a kink at Lambda_o = Lambda_i; there the larger one is taken to be Lambda_o.
+// G2 of two Lambdas >= 0 (the separable kinds: > -1) under a Smith masking (IsSmith); lambda in [0, 1] is read by the
+// direction-correlated kinds only. kDirection and kHeightDirection have a kink at Lambda_o = Lambda_i; there the larger
+// one is taken to be Lambda_o.
 double SmithG2(Masking masking, double Lambda_o, double Lambda_i, double lambda, SmithG2Gradient* gradient = nullptr);
 
 // Angle in [0, pi] between the azimuths of two directions; 0 if one of them is along the normal.

@@ -5,10 +5,10 @@ namespace lobefit {
 
 // Masking and shadowing for both directions, G2.
 enum class Masking {
-  kSmithSeparable,  // G1(wi) G1(wo) [Heitz eq 98], each min(1, cos / sigma) [Walter eq 5-6]; the min is a kink for tilted lobes
-  kSmithUnclamped,        // the same without the min: smooth, but energy can be created on one side of a tilted lobe
-  kSmithHeight,           // height-correlated [Heitz eq 99] with 1 + Lambda = max(1, sigma / cos)
-  kSmithDirection,        // direction-correlated [Heitz eq 100, corrected]; evaluated only, no choice of a recipe
+  kSmithSeparable,  // G1(wi) G1(wo) [Heitz eq 98], each min(1, cos / sigma) [Walter eq 5-6]: a kink of tilted lobes
+  kSmithUnclamped,  // the same without the min: smooth, but energy can be created on one side of a tilted lobe
+  kSmithHeight,     // height-correlated [Heitz eq 99] with 1 + Lambda = max(1, sigma / cos)
+  kSmithDirection,  // direction-correlated [Heitz eq 100, corrected]; evaluated only, no choice of a recipe
   kSmithHeightDirection,  // height- and direction-correlated [Heitz eq 101]; a kink where both Lambdas are equal
   kVCavity,               // [Heitz eq 49-50]; for distributions with D(x, y, z) = D(-x, -y, z)
   // For comparison, not derived from a surface:

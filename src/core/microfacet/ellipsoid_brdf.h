@@ -1,4 +1,5 @@
-// The microfacet BRDF of the ellipsoid distribution with separable Smith masking (kSmithSeparable or kSmithUnclamped, MATH.md section 5), and Lambert's.
+// The microfacet BRDF of the ellipsoid distribution with separable Smith masking (kSmithSeparable or kSmithUnclamped,
+// MATH.md section 5), and Lambert's.
 //
 // [Walter] ellipsoid NDF, eq 4-6:  f_r = F(c) D(wh) G1(wo) G1(wi) / (4 (wo.n) (wi.n)),  c = wo.wh,  in 1/sr.
 // Directions are unit vectors away from the surface, n = +z; at or below the horizon f_r is 0. All functions are

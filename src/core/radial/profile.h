@@ -81,8 +81,8 @@ class Profile {
   std::vector<double> dlog_mass_;
 };
 
-// D(wm), 1/sr: GGX's D (slope_distribution.h; `slopes.family` is not read) times e^E pi / Z; 0 for wm.z <= 0. Gradient by
-// alpha_x, alpha_y, r, slope_x, slope_y and q: d ln D / dq_k = B_k(u) - Z_k / Z.
+// D(wm), 1/sr: GGX's D (slope_distribution.h; `slopes.family` is not read) times e^E pi / Z; 0 for wm.z <= 0. Gradient
+// by alpha_x, alpha_y, r, slope_x, slope_y and q: d ln D / dq_k = B_k(u) - Z_k / Z.
 double ProfileD(const Profile& profile, const SlopeDistribution& slopes, const Vec3& wm, double* gradient = nullptr);
 
 }  // namespace lobefit

@@ -18,8 +18,9 @@ class ProfilePoints {
   // Call once, after the last point.
   void Finish();
 
-  // moments[m * stride] += sum w_m (e^E - Z / pi): as it stands without the factor pi / Z or, without `minus_ggx`, sum w_m e^E; moments[m * stride + 1 + k] +=
-  // sum w_m e^E B_k, m = 0, 1, 2: a profile's sums by the cubics of E, and of e^E x^j for the derivatives.
+  // moments[m * stride] += sum w_m (e^E - Z / pi): as it stands without the factor pi / Z or, without `minus_ggx`, sum
+  // w_m e^E; moments[m * stride + 1 + k] += sum w_m e^E B_k, m = 0, 1, 2: a profile's sums by the cubics of E, and of
+  // e^E x^j for the derivatives.
   void AddMoments(const Profile& profile, bool minus_ggx, double* moments, std::size_t stride) const;
 
  private:

@@ -18,8 +18,8 @@ bool IsNearFloor(const NoiseModel& noise, double v) { return v < 3 * std::sqrt(n
 
 constexpr const char* kBiasPhrase = " is biased by the noise of these values (";
 
-// J^T W (T'' s^2 / 2), in the columns of `shift` with the s of floor and counts and with that of all noise, and J^T W J of the
-// samples.
+// J^T W (T'' s^2 / 2), in the columns of `shift` with the s of floor and counts and with that of all noise, and J^T W J
+// of the samples.
 void AddShift(const Problem& problem, const Layout& layout, const KernelModel& kernel, const Samples& samples,
               const NoiseModel& noise, const std::vector<std::vector<double>>& f_r, ArrowMatrix* hessian,
               Eigen::MatrixXd* shift) {

@@ -31,8 +31,8 @@ struct NoiseBias {
 // To first order noise of standard deviation s moves the mean of a transformed reading by T''(v) s^2 / 2, and the
 // parameters by d = (J^T J)^-1 J^T (T'' s^2 / 2). What noise of the value does is the same share of every value,
 // rho^2 / 3 under the cube root: no reason for another curve, so that the floor's part is told apart, but more than a
-// standard error where samples are many. Good while v > 2 s: below, v is taken as 2 s. `covariance` is that of the solver's
-// coordinates. Nothing where the noise cannot be estimated.
+// standard error where samples are many. Good while v > 2 s: below, v is taken as 2 s. `covariance` is that of the
+// solver's coordinates. Nothing where the noise cannot be estimated.
 std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vector<double>& u,
                                           const Eigen::MatrixXd& covariance, const Samples& samples,
                                           const Incidences& incidences, ThreadPool* pool);

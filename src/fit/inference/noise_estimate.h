@@ -16,8 +16,8 @@ namespace lobefit {
 // over the 6 nearest directions of the same incidence, a the weights of the local linear prediction at j in its tangent
 // plane. In bins of equal count in x the deviation is 1.4826 median |e|; floor and relative noise fit it as
 // sqrt(floor^2 + relative^2 x^2), by the logarithms with Huber's loss, and with a term of counting noise, poisson times
-// the mean of v weighted alike, where that halves what they leave and gains more than 3 standard deviations. A sixth to a quarter of a misfit of 10 % remains
-// in `relative` where samples are 15 degrees apart.
+// the mean of v weighted alike, where that halves what they leave and gains more than 3 standard deviations. A sixth to
+// a quarter of a misfit of 10 % remains in `relative` where samples are 15 degrees apart.
 //
 // f_r[channel][sample] of the model. Nothing where fewer than 40 samples have neighbours, or nothing but rounding is
 // left. At most some 4000 samples are looked at, spread over the incidences.

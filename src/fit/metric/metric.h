@@ -47,11 +47,11 @@ const std::vector<MetricRow>& MetricTable();
 const MetricRow& RowOf(Metric metric);
 const std::vector<Choice<Metric>>& MetricChoices();
 
-// The transform of a metric. Of kAsinh without counting noise: knee floor / relative, for which the residual has the same
-// standard deviation, `relative`, at every value [asinh as the variance-stabilising transform of this noise]. With it: a
-// knee of no fewer than 30 counts, above which the curve's bend takes no mean that is not taken out of it (Transform),
-// and weights that level the residuals (sigma_weights.h). The table's other rows do not depend on the noise. Domain:
-// kAsinh needs a known noise.
+// The transform of a metric. Of kAsinh without counting noise: knee floor / relative, for which the residual has the
+// same standard deviation, `relative`, at every value [asinh as the variance-stabilising transform of this noise]. With
+// it: a knee of no fewer than 30 counts, above which the curve's bend takes no mean that is not taken out of it
+// (Transform), and weights that level the residuals (sigma_weights.h). The table's other rows do not depend on the
+// noise. Domain: kAsinh needs a known noise.
 Transform TransformOf(Metric metric, const NoiseModel& noise);
 
 // Weight by the metric's sines of a sample, from the cosines of its polar angles.

@@ -41,7 +41,8 @@ class Layout {
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
   std::size_t channels() const { return channels_; }
   // Coordinates [0, shape_size()) are common to the channels: shapes, lobe by lobe, then the angles of the alignment,
-  // from first_angle() on, then those of the discs, from first_half_angle() on, as differences from the recipe's. The rest are Fresnel parameters, albedos and offsets.
+  // from first_angle() on, then those of the discs, from first_half_angle() on, as differences from the recipe's. The
+  // rest are Fresnel parameters, albedos and offsets.
   std::size_t shape_size() const { return shape_size_; }
   std::size_t first_angle() const { return first_angle_; }
   std::size_t first_half_angle() const { return first_half_angle_; }
@@ -109,8 +110,8 @@ class Layout {
     std::size_t columns() const { return entries.size() + profile.size(); }
   };
 
-  // Calls add(channel, i, j, value) for each entry of the upper triangles of the channels, and of the priors (of shapes),
-  // that is one of J^T J, and sums up the gradient.
+  // Calls add(channel, i, j, value) for each entry of the upper triangles of the channels, and of the priors (of
+  // shapes), that is one of J^T J, and sums up the gradient.
   template <class Add>
   void GatherEntries(const KernelSums& sums, const Add& add, Eigen::VectorXd* gradient) const;
   void AddShape(std::size_t lobe, const std::vector<Parameter>& parameters, std::size_t first_parameter);

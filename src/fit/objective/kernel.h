@@ -45,9 +45,9 @@ struct KernelLobe {
   std::shared_ptr<const LobeMeanRule> mean = nullptr;
 };
 
-// How the sample stands crooked on its stage: turned by R = Rz(e_z) Ry(e_y) Rx(e_x) against where the instrument has it.
-// Directions in its frame are w' = Rz(-z) R^T Rz(z) w, z the sample's azimuth on the stage: e_x and e_y are common to
-// all turns, e_z is 0 in the first and free in the others.
+// How the sample stands crooked on its stage: turned by R = Rz(e_z) Ry(e_y) Rx(e_x) against where the instrument has
+// it. Directions in its frame are w' = Rz(-z) R^T Rz(z) w, z the sample's azimuth on the stage: e_x and e_y are common
+// to all turns, e_z is 0 in the first and free in the others.
 struct KernelAlignment {
   std::vector<double> azimuths;  // z of each turn
   std::vector<double> angles;    // e_x, e_y, e_z of the second turn and so on; empty: the sample stands straight
@@ -76,7 +76,8 @@ struct KernelModel {
 
   std::size_t shape_columns() const;  // with the angles of the alignment and the discs
   // Columns of one channel: shape coordinates of all lobes, the angles of the alignment and of the discs (central
-  // differences of the model, 1e-6 of them), Fresnel parameters lobe by lobe, the diffuse albedo, the offset, the logarithm of the sample's gain where readings have them, the residual.
+  // differences of the model, 1e-6 of them), Fresnel parameters lobe by lobe, the diffuse albedo, the offset, the
+  // logarithm of the sample's gain where readings have them, the residual.
   std::size_t columns() const;
 };
 

@@ -31,8 +31,8 @@ void MergeArrows(const std::vector<KernelSums>& partial, std::vector<GainArrow>*
   }
 }
 
-// Where both directions graze, at a difference angle beyond 70 degrees, the part of a disc above the horizon is too long
-// for its mean (GgxRegionMean).
+// Where both directions graze, at a difference angle beyond 70 degrees, the part of a disc above the horizon is too
+// long for its mean (GgxRegionMean).
 constexpr double kLeastCosineOfCut = 0.35;
 double DifferenceCosine(const Samples& samples, std::size_t i) { return 0.5 * Norm(samples.wi(i) + samples.wo(i)); }
 

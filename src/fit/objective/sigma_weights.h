@@ -14,8 +14,9 @@ namespace lobefit {
 // model's misfit and not the instrument limits a sample; so no sample weighs more than twice the middle one.
 class SigmaWeights {
  public:
-  // Of metrics that know the noise (kAsinh): `noise.relative` and `noise.poisson` are added to the stated uncertainty, and
-  // with counting noise, which the curve does not level, there are weights without one. `samples` must outlive the object.
+  // Of metrics that know the noise (kAsinh): `noise.relative` and `noise.poisson` are added to the stated uncertainty,
+  // and with counting noise, which the curve does not level, there are weights without one. `samples` must outlive the
+  // object.
   SigmaWeights(const Samples& samples, Metric metric, const NoiseModel& noise);
 
   // Of nothing to weigh by: no uncertainty is stated, or all are 0.

@@ -15,13 +15,13 @@ inline bool IsPressed(double low, double high, double x, double slope, double no
   return low >= high || (x <= low && slope > -noise) || (x >= high && slope < noise);
 }
 
-// The minimum of a convex quadratic model within bounds about 0. `held`: those that stand at x from the beginning, which
-// have no room. minimum(held, x): the minimum with these held at x; product(x): the matrix times x.
+// The minimum of a convex quadratic model within bounds about 0. `held`: those that stand at x from the beginning,
+// which have no room. minimum(held, x): the minimum with these held at x; product(x): the matrix times x.
 //
 // First what leaves its bounds is held there, until nothing leaves them: a few solutions, and most often the minimum.
-// Where a coordinate is held that would rather come back it is not, and may even lie higher than 0 does: then from 0 on,
-// each time to the first bound in the way, with the coordinate of the steepest slope inwards let go at each minimum (Nocedal and
-// Wright, Numerical Optimization, algorithm 16.3, of bounds).
+// Where a coordinate is held that would rather come back it is not, and may even lie higher than 0 does: then from 0
+// on, each time to the first bound in the way, with the coordinate of the steepest slope inwards let go at each minimum
+// (Nocedal and Wright, Numerical Optimization, algorithm 16.3, of bounds).
 template <class Minimum, class Product>
 Eigen::VectorXd StepByActiveSet(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
                                 const Eigen::VectorXd& gradient, const std::vector<char>& without_room,

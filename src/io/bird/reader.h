@@ -13,7 +13,8 @@
 namespace lobefit {
 
 bool IsBird(std::string_view bytes);
-// Rows that differ in polarisation only are averaged, as CSV rows are (measurement/prepare/polarisation.h). Throws InputError.
+// Rows that differ in polarisation only are averaged, as CSV rows are (measurement/prepare/polarisation.h). Throws
+// InputError.
 Measurement ReadBird(const InputFile& file, const ReadOptions& options);
 
 }  // namespace lobefit

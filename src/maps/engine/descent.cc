@@ -101,8 +101,8 @@ std::array<bool, kMostUnknowns> HeldAt(const MapModel& model, const Place& place
   return held;
 }
 
-// The damped step, and the decrease that the quadratic promises. What would leave its bounds goes as far as they are, and
-// the others follow. False where the damped matrix is not positive definite.
+// The damped step, and the decrease that the quadratic promises. What would leave its bounds goes as far as they are,
+// and the others follow. False where the damped matrix is not positive definite.
 bool BoundedStep(int unknowns, const Place& place, const MapVector& gradient, const MapMatrix& hessian, double damping,
                  const std::array<bool, kMostUnknowns>& held, MapVector* step, double* promised) {
   std::array<bool, kMostUnknowns> fixed = held;
@@ -144,7 +144,8 @@ bool BoundedStep(int unknowns, const Place& place, const MapVector& gradient, co
 }
 
 // The matrix leaves out the model's own second derivatives: `secant` gathers them from the changes of the gradient over
-// the steps, each of rank one [symmetric rank one, Conn, Gould and Toint 1991; structured as Dennis, Gay and Welsch 1981].
+// the steps, each of rank one [symmetric rank one, Conn, Gould and Toint 1991; structured as Dennis, Gay and Welsch
+// 1981].
 void UpdateSecant(int unknowns, const std::array<bool, kMostUnknowns>& held, const MapVector& step,
                   const MapVector& before, const MapVector& gradient, const MapMatrix& hessian, MapMatrix* secant) {
   MapVector missing = {};

@@ -31,8 +31,8 @@ struct TwoWidths {
   MapFrame turned[2];
 };
 
-// Mean slopes of the lobe in the frame of the normal, and whether they, not turns of the normal, are the first two numbers
-// of the shape.
+// Mean slopes of the lobe in the frame of the normal, and whether they, not turns of the normal, are the first two
+// numbers of the shape.
 struct MeanSlope {
   double x, y;
   bool is_free;
@@ -86,8 +86,8 @@ double RowsOf(const LightTerms& terms, Curvature curvature, const RowArrays& arr
 void AddSquares(const LightTerms& terms, const double* weight, MapMatrix* matrix);
 // Adds sum over lights of factor row_j row_k, below the diagonal.
 void AddGram(const double* factor, const double* const* rows, int count, std::size_t padded, MapMatrix* matrix);
-// Of the way from residuals as they are to the jackknife (errors.h): where 95 % intervals of both recipes hold between 93.5
-// and 96.5 % on synthetic hills (tests/maps/coverage_test.cc).
+// Of the way from residuals as they are to the jackknife (errors.h): where 95 % intervals of both recipes hold between
+// 93.5 and 96.5 % on synthetic hills (tests/maps/coverage_test.cc).
 inline constexpr double kJackknife = 0.85;
 // moved[j][l]: by how much unknown j moves with light l (errors.cc); `inverse` has zeros for held unknowns.
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved);

@@ -16,8 +16,8 @@ enum class MapLobe { kNone, kGgx, kGgxAnisotropic, kEllipsoid };
 
 // A value is f_r(i, o) i_z with all directions in the frame of the shading normal n,
 //   diffuse_c / pi i_z + (f0_c (1 - k) + k) D G1(i) G1(o) / (4 o_z),  k = (1 - cos_d)^5 [Schlick 1994],
-// 0 where i_z <= 0; the lobe's part also where o_z <= 0. D: GGX in slope space with L = (a 0; b c) [Heitz 2014 eq 84-95];
-// G1 separable [Walter 2007 eq 34], of the ellipsoid at most 1.
+// 0 where i_z <= 0; the lobe's part also where o_z <= 0. D: GGX in slope space with L = (a 0; b c) [Heitz 2014 eq
+// 84-95]; G1 separable [Walter 2007 eq 34], of the ellipsoid at most 1.
 // The frame of n is the one that the shortest turn from z to n makes of x and y.
 struct MapModel {
   MapLobe lobe = MapLobe::kGgx;
@@ -34,9 +34,9 @@ struct MapModel {
   int F0At(int channel) const { return DiffuseAt(channel) + 1; }
 };
 
-// A point of the search. width: ln alpha, or ln a, b, ln c; slope: the ellipsoid's mean slopes in the frame of the normal
-// (core/ellipsoid/off_center.h). diffuse is diffuse / (pi scale), f0 is f0 / scale, where scale is that of the texel's
-// values.
+// A point of the search. width: ln alpha, or ln a, b, ln c; slope: the ellipsoid's mean slopes in the frame of the
+// normal (core/ellipsoid/off_center.h). diffuse is diffuse / (pi scale), f0 is f0 / scale, where scale is that of the
+// texel's values.
 struct MapPoint {
   Vec3 normal = {0, 0, 1};
   std::array<double, 2> slope = {0, 0};

@@ -29,8 +29,8 @@ void EvaluateShape(MapLobe lobe, const MapPoint& point, const LightArrays& light
   double* const dcosine[2] = {out->dcosine[0].data(), out->dcosine[1].data()};
   const bool general = lobe == MapLobe::kEllipsoid || (lobe != MapLobe::kNone && !lights.from_z);
   if (lobe == MapLobe::kGgx && !general) {
-    // One width: D and G1 depend on the cosines with the normal alone. With s(c) = sqrt(c^2 + alpha^2 (1 - c^2)) and K =
-    // h_z^2 + (|h|^2 - h_z^2) / alpha^2:
+    // One width: D and G1 depend on the cosines with the normal alone. With s(c) = sqrt(c^2 + alpha^2 (1 - c^2)) and K
+    // = h_z^2 + (|h|^2 - h_z^2) / alpha^2:
     //   specular = |h|^4 i_z / (pi alpha^2 K^2 (i_z + s_i) (o_z + s_o)).
     double* const dspecular[3] = {out->dspecular[0].data(), out->dspecular[1].data(), out->dspecular[2].data()};
     const double alpha = std::exp(point.width[0]);

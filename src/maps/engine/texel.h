@@ -33,8 +33,8 @@ enum MapStatus : std::uint32_t {
   kMapNoLobe = 32,  // the evidence is against a lobe
 };
 
-// What is known of a texel from elsewhere and is not fitted: of `point`, where diffuse is albedo / pi and f0 that of the
-// stack's unit.
+// What is known of a texel from elsewhere and is not fitted: of `point`, where diffuse is albedo / pi and f0 that of
+// the stack's unit.
 struct HeldNumbers {
   bool normal = false, slope = false, width = false, diffuse = false, f0 = false;
   MapPoint point;
@@ -46,9 +46,9 @@ struct ProfileTerms {
   MapMatrix curvature = {};
 };
 
-// alpha_x >= alpha_y; angle: of alpha_x's axis in the frame of the normal, counter-clockwise, in (-pi/2, pi/2]; tilt: of
-// the ellipsoid, theta_x and theta_y of core/ellipsoid in the same frame. A number that the data do not determine is NaN,
-// its error then too. Diffuse albedo and f0 in the stack's unit.
+// alpha_x >= alpha_y; angle: of alpha_x's axis in the frame of the normal, counter-clockwise, in (-pi/2, pi/2]; tilt:
+// of the ellipsoid, theta_x and theta_y of core/ellipsoid in the same frame. A number that the data do not determine is
+// NaN, its error then too. Diffuse albedo and f0 in the stack's unit.
 struct TexelFit {
   Vec3 normal = {kNan, kNan, kNan}, normal_error = {kNan, kNan, kNan};
   double normal_angle_error = kNan;  // radians: root of the sum of both tangents' variances

@@ -1,7 +1,8 @@
 // The lobe about any mean slope, seen from anywhere (kernels-inl.h).
 
-// c_u + s of G1(u) = 2 u_z / (c_u + s), c_u = u_z - x_s u_x - y_s u_y, s^2 = c_u^2 + q1^2 + q2^2, and what its logarithm
-// changes by: with u, and with the numbers of the shape. At least 2 u_z, where it does not change with the latter.
+// c_u + s of G1(u) = 2 u_z / (c_u + s), c_u = u_z - x_s u_x - y_s u_y, s^2 = c_u^2 + q1^2 + q2^2, and what its
+// logarithm changes by: with u, and with the numbers of the shape. At least 2 u_z, where it does not change with the
+// latter.
 struct SlopeSum {
   Lanes sum, by_u[3], by_slope[2], by_width[3];
 };

@@ -26,8 +26,8 @@ StackFiles ReadLightFile(const std::filesystem::path& file);
 // A dome of RelightLab (.dome, JSON): directions, or positions in the unit of imageWidth; the images beside it by name.
 StackFiles ReadDome(const std::filesystem::path& file);
 
-// The JSON of MaterialGAN's captures: im_size (cm, side of the square picture), camera_pos, light_pos, light_pow, and the
-// images NN.png of `idx` in target_dir, with gamma 2.2 [as the reader of tflsguoyu's svbrdf-diff-renderer has it].
+// The JSON of MaterialGAN's captures: im_size (cm, side of the square picture), camera_pos, light_pos, light_pow, and
+// the images NN.png of `idx` in target_dir, with gamma 2.2 [as the reader of tflsguoyu's svbrdf-diff-renderer has it].
 StackFiles ReadMaterialGan(const std::filesystem::path& file);
 bool IsMaterialGan(const std::filesystem::path& file);
 

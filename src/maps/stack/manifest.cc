@@ -78,7 +78,8 @@ void ReadImages(const Manifest& manifest, const toml::table& table, Stack* stack
   stack->images = manifest.Matching(manifest.Text(table, "images"), "images");
 }
 
-// Where `images` names one OpenEXR file of several parts, these are the images: all, or those that the light file names.
+// Where `images` names one OpenEXR file of several parts, these are the images: all, or those that the light file
+// names.
 void ReadParts(const std::vector<std::filesystem::path>& named, const std::filesystem::path& folder, Stack* stack) {
   if (stack->images.size() != 1) return;
   const std::filesystem::path file = stack->images[0];

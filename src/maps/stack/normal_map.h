@@ -10,8 +10,8 @@
 
 namespace lobefit {
 
-// Red, green and blue are x, y and z: of a picture of 16 bits (value + 1) / 2, of one in floating point the value. `down`:
-// y runs down the picture. Throws InputError where it is no such picture or of another size than the images.
+// Red, green and blue are x, y and z: of a picture of 16 bits (value + 1) / 2, of one in floating point the value.
+// `down`: y runs down the picture. Throws InputError where it is no such picture or of another size than the images.
 void SetNormalMap(const std::filesystem::path& file, bool down, Stack* stack);
 
 // Its rows. Throws InputError.

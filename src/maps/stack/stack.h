@@ -28,8 +28,9 @@ struct NearLights {
   double exponent = 0;  // of the cosine to a light's axis, which points to the middle: 0 for a bulb, 1 for a flat LED
 };
 
-// Everything but the pixels. x runs right and y up over the picture, z to the camera. After division by the intensity (and, of near lights, by what distance and axis make of it) a pixel is f_r
-// cos_theta_i, in 1/sr where `calibrated`, else times one unknown factor of the whole stack.
+// Everything but the pixels. x runs right and y up over the picture, z to the camera. After division by the intensity
+// (and, of near lights, by what distance and axis make of it) a pixel is f_r cos_theta_i, in 1/sr where `calibrated`,
+// else times one unknown factor of the whole stack.
 struct Stack {
   std::filesystem::path path;  // as given
   std::string layout;          // "DiLiGenT folder", ...
@@ -64,7 +65,8 @@ struct StackOptions {
 };
 
 // Reads the layout by content: a folder of DiLiGenT's, an RTI light file (.lp), a dome or MaterialGAN's JSON beside its
-// images, a stack.toml or a folder with one. Opens each image to see its size. Throws InputError that names the file and the cure.
+// images, a stack.toml or a folder with one. Opens each image to see its size. Throws InputError that names the file
+// and the cure.
 Stack OpenStack(const std::filesystem::path& path, const StackOptions& options);
 
 // Whether OpenStack would take the path for a stack: by its name and what lies in the folder, not by its images.

@@ -122,9 +122,9 @@ class Checks {
                        "--incident propagation (a retro-reflector looks like this too)");
   }
 
-  // Lobes about the normal at every incidence are those of angles that count from the mirror direction; at the complement
-  // of the mirror's polar angle, of angles that count from the surface. At grazing incidence lobes lie off the mirror
-  // direction by themselves.
+  // Lobes about the normal at every incidence are those of angles that count from the mirror direction; at the
+  // complement of the mirror's polar angle, of angles that count from the surface. At grazing incidence lobes lie off
+  // the mirror direction by themselves.
   void CheckPeaks() {
     std::size_t asked = 0, normal = 0, apart = 0, complement = 0;
     const double near = std::cos(8 * kPi / 180), degree = kPi / 180;

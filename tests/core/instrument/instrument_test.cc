@@ -120,8 +120,8 @@ TEST(QuadratureMeans, OfAPointAreTheValues) {
   EXPECT_NEAR(m.flux.value, m.fr.value, 1e-15 * m.fr.value);
 }
 
-// Where the masking of a tilted lobe is clamped on part of the disc only, what is summed has a kink: without a split along
-// it derivatives were off by up to 8e-5.
+// Where the masking of a tilted lobe is clamped on part of the disc only, what is summed has a kink: without a split
+// along it derivatives were off by up to 8e-5.
 TEST(QuadratureMeans, DerivativesHoldAcrossTheEndOfTheClamp) {
   const ConductorIndex index = {0.2, 3};
   const Aperture aperture = {0, 0.06};

@@ -54,8 +54,8 @@ Vec3 LightFor(const Vec3& wo, double alpha, double widths) {
   return 2 * Dot(h, wo) * h - wo;
 }
 
-// alpha 0.005 to 0.5, half angles 0.25 to 5 degrees, whole and cut by the horizon, light in and off the lobe. The largest
-// errors are those of the polygon and of the mean of what is smooth beside D.
+// alpha 0.005 to 0.5, half angles 0.25 to 5 degrees, whole and cut by the horizon, light in and off the lobe. The
+// largest errors are those of the polygon and of the mean of what is smooth beside D.
 TEST(RegionMean, DiscsAgainstSumsOverDirections) {
   for (const bool cut : {false, true}) {
     for (const double degrees : {0.25, 1., 2., 5.}) {

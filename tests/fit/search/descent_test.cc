@@ -69,8 +69,8 @@ struct CeresResidual {
   }
 };
 
-// Ceres with an AutoDiff block a point, once for each choice of coordinates that stand at a bound: the best of what lies within the box.
-// (Its own bounds stop short: up to 0.1 away, at a higher cost.)
+// Ceres with an AutoDiff block a point, once for each choice of coordinates that stand at a bound: the best of what
+// lies within the box. (Its own bounds stop short: up to 0.1 away, at a higher cost.)
 Eigen::Vector3d SolvedByCeres(const Curve3& curve, const Eigen::Vector3d& start, const Eigen::Vector3d& low,
                               const Eigen::Vector3d& high) {
   Eigen::Vector3d best = start;
@@ -246,8 +246,8 @@ TEST(BoundedStep, IsTheMinimumOfTheQuadraticWithinTheBox) {
   EXPECT_EQ(BoundedStep(h, g, -far, far)(1), 0);
 }
 
-// Of coordinates that are all but proportional, several leave their bounds at once and some come back: the conditions of
-// Karush, Kuhn and Tucker hold at the end all the same, and the step goes down.
+// Of coordinates that are all but proportional, several leave their bounds at once and some come back: the conditions
+// of Karush, Kuhn and Tucker hold at the end all the same, and the step goes down.
 TEST(BoundedStep, CoordinatesComeBackFromTheirBounds) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;

@@ -108,8 +108,8 @@ class MaterialXReader {
     }
   }
 
-  // A value beside a connection is not used, and a colour may be in another space than the linear one of Rec. 709; of the
-  // elements around it the nearest says.
+  // A value beside a connection is not used, and a colour may be in another space than the linear one of Rec. 709; of
+  // the elements around it the nearest says.
   void CheckConstant(pugi::xml_node input) const {
     if (!input.attribute("value")) return;
     for (const char* other : {"nodename", "nodegraph", "output", "interfacename", "unit"}) {

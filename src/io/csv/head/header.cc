@@ -307,8 +307,8 @@ class HeaderReader {
     for (const std::string& remark : header_.keys.remarks) header_.remarks.push_back(remark);
   }
 
-  // A row of units; one that holds a unit which is not known is not passed over, see CsvColumn::problem. Above the names
-  // titles stand, so there it must speak of angles.
+  // A row of units; one that holds a unit which is not known is not passed over, see CsvColumn::problem. Above the
+  // names titles stand, so there it must speak of angles.
   void TakeUnitsOf(std::size_t line, bool above) {
     if (lines_[line].comment) return;
     const Fields units = SplitFields(lines_[line].text, header_.separator);

@@ -355,6 +355,8 @@ bool LooksLikeAngle(const CsvColumn& column) {
   });
 }
 
+std::string QuotedName(const CsvColumn& column) { return "'" + Excerpt(column.name) + "'"; }
+
 std::string AllowedColumns() {
   return "theta_i, phi_i, theta_o, phi_o, dphi, azimuth with incidence and receive, theta_o - theta_i, bistatic angle, "
          "deviation angle, beta - beta0, "

@@ -97,6 +97,9 @@ void SetUnit(std::string_view unit, CsvColumn* column);
 // True for a name that speaks of an angle without being understood: to ignore it would misread the file.
 bool LooksLikeAngle(const CsvColumn& column);
 
+// The name between quotes, for messages.
+std::string QuotedName(const CsvColumn& column);
+
 // Names that users can choose from, for messages.
 std::string AllowedColumns();
 

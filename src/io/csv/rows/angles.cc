@@ -42,8 +42,6 @@ class AngleFinder {
  private:
   [[noreturn]] void Fail(const std::string& what) const { FailAtLine(file_, header_.names_line, what); }
 
-  static std::string Quoted(const CsvColumn& column) { return "'" + Excerpt(column.name) + "'"; }
-
   CsvColumn* Column(C coordinate) {
     for (CsvColumn& column : columns_) {
       if (column.role == ColumnRole::kCoordinate && column.coordinate == coordinate) return &column;
@@ -197,14 +195,14 @@ class AngleFinder {
       follow += std::fabs(std::acos(std::clamp(cos_g, -1.0, 1.0)) - std::fabs(g)) < 0.02 ? 1 : 0;
     }
     if (10 * follow >= 9 * rows && rows > 0) {
-      notes_.remarks.push_back(Quoted(*phase) + " follows from the other angles and was not used; " + Quoted(*azimuth) +
-                               " is relative to the light");
+      notes_.remarks.push_back(QuotedName(*phase) + " follows from the other angles and was not used; " +
+                               QuotedName(*azimuth) + " is relative to the light");
       Become(C::kPhi, C::kDeltaPhi);
       columns_[static_cast<std::size_t>(phase - columns_.data())].role = ColumnRole::kIgnored;
     } else {
-      notes_.remarks.push_back(Quoted(*phase) +
+      notes_.remarks.push_back(QuotedName(*phase) +
                                " is not the angle between the two directions: read as the azimuth of the viewer, and " +
-                               Quoted(*azimuth) + " as that of the light");
+                               QuotedName(*azimuth) + " as that of the light");
       Become(C::kPhi, C::kPhiI);
       Become(C::kPhase, C::kPhiO);
     }
@@ -251,7 +249,7 @@ class AngleFinder {
       if (column.role != ColumnRole::kCoordinate) continue;
       for (const auto& [coordinate, other] : layout_.coordinates) {
         if (coordinate == column.coordinate)
-          Fail("the columns " + Quoted(columns_[other]) + " and " + Quoted(column) +
+          Fail("the columns " + QuotedName(columns_[other]) + " and " + QuotedName(column) +
                " mean the same; remove one of them");
       }
       directions.Give(column.coordinate, Scale(column), column.form);
@@ -264,7 +262,8 @@ class AngleFinder {
       if (column.role != ColumnRole::kFixed) continue;
       if (first == nullptr) first = &column;
       if (Scale(column) != Scale(*first) || column.form != first->form)
-        Fail("the columns " + Quoted(*first) + " and " + Quoted(column) + " have different units; use one unit");
+        Fail("the columns " + QuotedName(*first) + " and " + QuotedName(column) +
+             " have different units; use one unit");
       directions.Give(column.coordinate, Scale(column), column.form);
     }
     if (head_) directions.Give(*head_, Scale(*head_, std::nullopt));
@@ -300,13 +299,13 @@ class AngleFinder {
       return column.role == ColumnRole::kUnknown && !name.words.empty() && name.words[0] == "alpha";
     });
     if (directions.Has(C::kBeta) && alpha != columns_.end()) {
-      Fail(Quoted(*alpha) + " and " + Quoted(*Column(C::kBeta)) +
+      Fail(QuotedName(*alpha) + " and " + QuotedName(*Column(C::kBeta)) +
            " are two direction cosines of which the axes are not said; write wi_x ... wo_z or polar angles and "
            "azimuths");
     }
     if (Column(C::kTheta) != nullptr || Column(C::kPhi) != nullptr) {
       const CsvColumn& column = *(Column(C::kTheta) != nullptr ? Column(C::kTheta) : Column(C::kPhi));
-      Fail("the column " + Quoted(column) +
+      Fail("the column " + QuotedName(column) +
            " does not say whose angle it is; name it phi_i, phi_o or dphi (theta_i or theta_o), or say it with "
            "--columns phi_o=" +
            Excerpt(column.name));

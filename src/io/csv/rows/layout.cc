@@ -13,17 +13,12 @@
 #include "lobefit/io/csv/names/name_rules.h"
 #include "lobefit/io/csv/names/polarised_columns.h"
 #include "lobefit/io/csv/rows/angles.h"
+#include "lobefit/io/csv/rows/value_unit.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 
 namespace lobefit {
 namespace {
-
-std::string Quoted(const CsvColumn& column) {
-  std::string quoted = "'";
-  quoted += Excerpt(column.name);
-  return quoted += '\'';
-}
 
 std::string NamesOf(const std::vector<CsvColumn>& columns) {
   std::vector<std::string> names;
@@ -53,7 +48,7 @@ class LayoutBuilder {
     FindWavelength();
     FindUncertainties();
     CheckColumns();
-    SetValueKind();
+    FindValueUnit(file_, header_, options_, columns_, &layout_, measurement_);
     MarkNumbers();
     return std::move(layout_);
   }
@@ -66,7 +61,7 @@ class LayoutBuilder {
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       if (columns_[i].role != role) continue;
       if (found != kNoColumn)
-        Fail("the columns " + Quoted(columns_[found]) + " and " + Quoted(columns_[i]) +
+        Fail("the columns " + QuotedName(columns_[found]) + " and " + QuotedName(columns_[i]) +
              " mean the same; remove one of them");
       found = i;
     }
@@ -99,13 +94,13 @@ class LayoutBuilder {
       if (!chosen) layout_.polarisations.push_back(i);
     }
     if (layout_.polarisations.size() > 2) {
-      Fail("more than two columns hold a polarisation: " + Quoted(columns_[layout_.polarisations[0]]) + ", " +
-           Quoted(columns_[layout_.polarisations[1]]) + ", ...; choose rows with --where");
+      Fail("more than two columns hold a polarisation: " + QuotedName(columns_[layout_.polarisations[0]]) + ", " +
+           QuotedName(columns_[layout_.polarisations[1]]) + ", ...; choose rows with --where");
     }
     // The light's state chosen, f_r is the sum over the detector's, which the average is not.
     if (light_chosen && layout_.polarisations.size() == 1 && columns_[layout_.polarisations[0]].of_viewer) {
-      Fail("--where chooses a polarisation of the light; choose one of " + Quoted(columns_[layout_.polarisations[0]]) +
-           " too");
+      Fail("--where chooses a polarisation of the light; choose one of " +
+           QuotedName(columns_[layout_.polarisations[0]]) + " too");
     }
   }
 
@@ -176,8 +171,8 @@ class LayoutBuilder {
     const auto value = std::find_if(columns_.begin(), columns_.end(),
                                     [](const CsvColumn& column) { return column.role == ColumnRole::kValue; });
     if (value != columns_.end()) {
-      Fail("the column " + Quoted(columns_[layout_.groups[0].values[0]]) +
-           " holds values at one angle, by its name, but " + Quoted(*value) +
+      Fail("the column " + QuotedName(columns_[layout_.groups[0].values[0]]) +
+           " holds values at one angle, by its name, but " + QuotedName(*value) +
            " holds values too; say what they are by --columns, or choose one with --value-column");
     }
     layout_.channels.names = {"Y"};
@@ -220,7 +215,7 @@ class LayoutBuilder {
           Fail("two columns hold the channel " + column.channel + "; remove one of them");
         spectral.push_back(i);
       } else if (!letters.emplace(column.channel, i).second) {
-        Fail("two columns are named " + Quoted(column) + "; remove one of them");
+        Fail("two columns are named " + QuotedName(column) + "; remove one of them");
       }
     }
     std::vector<std::vector<std::size_t>> candidates;
@@ -254,7 +249,7 @@ class LayoutBuilder {
         Fail("several columns can be the value: " + Excerpt(Join(names), 200) + "; choose one with --value-column");
       const std::size_t other = FindPossibleValue(columns_);
       if (other < columns_.size()) {
-        Fail("the column " + Quoted(columns_[other]) +
+        Fail("the column " + QuotedName(columns_[other]) +
              " can be f_r, pi f_r, f_r times a cosine or something else; say it with --value-column \"" +
              Excerpt(columns_[other].name) + "\" and --value-kind f|pi-f|f-cos-o|f-cos-i");
       }
@@ -314,7 +309,7 @@ class LayoutBuilder {
       if (group.values.size() != 1 || next >= columns_.size() || columns_[next].role != ColumnRole::kSigma) continue;
       const CsvColumn& sigma = columns_[next];
       if (sigma.fixed != 0 && sigma.fixed != columns_[next - 1].fixed)
-        Fail("the column " + Quoted(sigma) + " stands behind " + Quoted(columns_[next - 1]) +
+        Fail("the column " + QuotedName(sigma) + " stands behind " + QuotedName(columns_[next - 1]) +
              " and speaks of another angle; put each uncertainty behind its value");
       group.sigma = next;
       ++paired;
@@ -342,7 +337,7 @@ class LayoutBuilder {
       if (!columns_[known->second].problem.empty()) {
         known->second = i;  // the standard uncertainty, beside an expanded one of unknown factor
       } else {
-        Fail("two columns are named " + Quoted(column) + "; remove one of them");
+        Fail("two columns are named " + QuotedName(column) + "; remove one of them");
       }
     }
     if (by_channel.empty() || layout_.groups.size() > 1) return;
@@ -380,18 +375,18 @@ class LayoutBuilder {
       if (IsUsed(i)) {
         if (!column.problem.empty() && !(options_.angle_unit && column.role == ColumnRole::kCoordinate) &&
             !(IsValue(i) && HasValueScale())) {
-          Fail("column " + std::to_string(i + 1) + ", " + Quoted(column) + ", " + column.problem);
+          Fail("column " + std::to_string(i + 1) + ", " + QuotedName(column) + ", " + column.problem);
         }
         continue;
       }
       if (column.name.empty()) continue;
       if (LooksLikeAngle(column) && !options_.value_column) {
-        Fail("column " + std::to_string(i + 1) + " is named " + Quoted(column) +
+        Fail("column " + std::to_string(i + 1) + " is named " + QuotedName(column) +
              ", which speaks of an angle but is not known; allowed: " + AllowedColumns() +
              "; or choose the column of values with --value-column, then unknown ones are ignored");
       }
       if (MarksRows(column)) {
-        measurement_->remarks.push_back("the column " + Quoted(column) +
+        measurement_->remarks.push_back("the column " + QuotedName(column) +
                                         " may say which rows are good and was not used; choose them with --where \"" +
                                         Excerpt(column.name) + "=...\"");
         continue;
@@ -430,61 +425,6 @@ class LayoutBuilder {
     });
   }
   bool HasValueScale() const { return !options_.value_scale.empty() || header_.keys.value_scale; }
-
-  void SetValueKind() {
-    const CsvColumn& column = columns_[layout_.groups[0].values[0]];
-    std::string origin = "default";
-    if (options_.value_kind) {
-      layout_.value_kind = *options_.value_kind;
-      origin = "option";
-    } else if (header_.keys.value_kind) {
-      layout_.value_kind = *header_.keys.value_kind;
-      origin = "header";
-    } else if (column.value_kind) {
-      layout_.value_kind = *column.value_kind;
-      origin = "column name";
-    }
-    const bool percent = column.value_scale && column.value_scale->factor == 0.01;
-    if (origin == "default" && column.role == ColumnRole::kChannel && percent)
-      Fail("the column " + Quoted(column) + " in percent can be f_r or pi f_r; say it with --value-kind f|pi-f");
-    measurement_->conventions["value-kind"] = std::string(Name(layout_.value_kind)) + " (" + origin + ")";
-    SetValueScale(column);
-  }
-
-  void SetValueScale(const CsvColumn& column) {
-    std::string origin, unit;
-    if (!options_.value_scale.empty()) {
-      const std::optional<ValueScale> scale = ParseValueScale(options_.value_scale);
-      if (!scale)
-        throw UsageError("--value-scale " + Excerpt(options_.value_scale) +
-                         ": allowed are 1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.");
-      layout_.value_scale = *scale;
-      unit = options_.value_scale;
-      origin = "option";
-    } else if (header_.keys.value_scale) {
-      layout_.value_scale = *header_.keys.value_scale;
-      origin = "header";
-    } else if (column.value_scale) {
-      layout_.value_scale = *column.value_scale;
-      unit = column.unit.empty() ? column.name : column.unit;
-      origin = "column name";
-    }
-    for (const ValueGroup& group : layout_.groups) {
-      for (const std::size_t i : group.values) {
-        const ValueScale other = columns_[i].value_scale.value_or(ValueScale{});
-        const ValueScale first = column.value_scale.value_or(ValueScale{});
-        if (other.form != first.form || other.factor != first.factor)
-          Fail("the columns " + Quoted(column) + " and " + Quoted(columns_[i]) +
-               " have different units; give all values in one");
-      }
-    }
-    if (layout_.value_scale.IsIdentity() && !layout_.value_scale.arbitrary) return;
-    measurement_->conventions["value-scale"] = Excerpt(unit.empty() ? "as stated" : unit) + " (" + origin + ")";
-    if (layout_.value_scale.arbitrary) {
-      measurement_->remarks.push_back("the values have no unit that is known (" + Excerpt(unit) +
-                                      "): their scale is not f_r in 1/sr; fit with --scale free");
-    }
-  }
 
   void MarkNumbers() {
     layout_.is_number.assign(columns_.size(), false);

@@ -1,4 +1,4 @@
-#include "lobefit/base/flat_json.h"
+#include "lobefit/batch/run/flat_members.h"
 
 #include <utility>
 #include <vector>
@@ -16,19 +16,18 @@ using testing::Pair;
 
 std::vector<std::pair<std::string, std::string>> Members(std::string_view text) {
   std::vector<std::pair<std::string, std::string>> members;
-  FlatJson json(text);
-  while (json.Next()) members.emplace_back(json.name(), json.value());
+  for (const FlatMember& member : FlatMembers(text)) members.emplace_back(member.name, member.value);
   return members;
 }
 
-TEST(FlatJson, GivesMembersInOrder) {
+TEST(FlatMembers, GivesMembersInOrder) {
   EXPECT_THAT(Members("{}"), testing::IsEmpty());
   EXPECT_THAT(Members(R"( { "a" : null, "b":true,"c":false,"d":-3,"e":1.5e-07,"f":"x" } )"),
               ElementsAre(Pair("a", "null"), Pair("b", "true"), Pair("c", "false"), Pair("d", "-3"),
                           Pair("e", "1.5e-07"), Pair("f", "x")));
 }
 
-TEST(FlatJson, TakesEscapesBack) {
+TEST(FlatMembers, TakesEscapesBack) {
   EXPECT_THAT(Members(R"({"a\"b":"\\\/\b\f\n\r\t,\u0041\u00e4\u20AC\ud83d\ude00end","c":"{\"d\":1}"})"),
               ElementsAre(Pair("a\"b",
                                "\\/\b\f\n\r\t,A\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80"
@@ -36,7 +35,7 @@ TEST(FlatJson, TakesEscapesBack) {
                           Pair("c", "{\"d\":1}")));
 }
 
-TEST(FlatJson, RefusesWhatIsNoFlatObject) {
+TEST(FlatMembers, RefusesWhatIsNoFlatObject) {
   for (const char* text : {"",
                            "3",
                            "[1]",
