@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/base/version.h"
 #include "lobefit/export/export.h"
 #include "lobefit/material/json.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/export/export.h"
 
 namespace lobefit {

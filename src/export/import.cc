@@ -1,7 +1,7 @@
 #include "lobefit/export/import.h"
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/export/targets.h"
 
 namespace lobefit {

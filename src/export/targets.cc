@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/export/targets/brdf_explorer/write.h"
 #include "lobefit/export/targets/bsdf_xml/write.h"
 #include "lobefit/export/targets/csv/write.h"

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/progress.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/progress.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/prediction.h"

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/inference/energy_balance.h"
 #include "lobefit/fit/inference/file_clusters.h"
 #include "lobefit/fit/inference/misfit.h"

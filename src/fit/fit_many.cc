@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/core/brdf/lobe.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"

@@ -11,7 +11,7 @@
 // model's folds from its descent on the whole of it.
 #pragma once
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/fit.h"
 
 namespace lobefit {

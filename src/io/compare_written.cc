@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/measurement/spectrum.h"
 
 namespace lobefit {

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/no_value.h"
 #include "lobefit/io/csv/reader.h"
 #include "lobefit/io/formats.h"

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/read.h"
 #include "lobefit/measurement/prepare/pool.h"
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/alta/writer.h"
 #include "lobefit/io/bsdf_xml/writer.h"
 #include "lobefit/io/compare_written.h"

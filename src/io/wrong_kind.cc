@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <mutex>
 
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/progress.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/process/progress.h"
 #include "lobefit/maps/stack/geometry.h"
 
 namespace lobefit {

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/printable.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/printable.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/base/version.h"
 #include "lobefit/maps/bands.h"
 #include "lobefit/maps/document.h"

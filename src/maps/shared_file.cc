@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/maps/shared_numbers.h"
 
 namespace lobefit {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/progress.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/process/progress.h"
 #include "lobefit/maps/bands.h"
 #include "lobefit/maps/engine/factor.h"
 #include "lobefit/maps/stack/geometry.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/base/version.h"
 #include "lobefit/material/json.h"
 #include "lobefit/math/vec.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

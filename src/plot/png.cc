@@ -7,7 +7,7 @@
 #include <png.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 
 namespace lobefit {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
-#include "lobefit/base/toml_file.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/files/toml_file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/core/fresnel/optical_constants.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/recipe/free_scale.h"

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/recipe/recipe.h"
 

@@ -11,8 +11,8 @@
 #include <OpenEXR/ImfStdIO.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/printable.h"
 
 namespace lobefit {
 namespace {

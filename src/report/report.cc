@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "lobefit/base/file.h"
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/plot/png.h"
 #include "lobefit/report/exr.h"
 #include "lobefit/report/panels/page.h"

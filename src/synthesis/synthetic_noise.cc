@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/synthesis/random.h"
 #include "lobefit/synthesis/synthesis.h"

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/inference/noise_bias.h"
 #include "lobefit/fit/objective/coordinates.h"

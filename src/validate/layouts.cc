@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/core/microfacet/vndf.h"
 #include "lobefit/fit/instrument.h"
 #include "lobefit/io/bsdf_xml/angle_basis.h"

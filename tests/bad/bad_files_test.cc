@@ -12,8 +12,8 @@
 #include <sys/resource.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/read.h"

@@ -1,11 +1,11 @@
-#include "lobefit/base/control_group.h"
+#include "lobefit/base/process/control_group.h"
 
 #include <filesystem>
 
 #include "tests/support/run_program.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 
 namespace lobefit {
 namespace {

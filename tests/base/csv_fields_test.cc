@@ -1,4 +1,4 @@
-#include "lobefit/base/csv_fields.h"
+#include "lobefit/base/text/csv_fields.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 
 #include <filesystem>
 #include <thread>

@@ -14,9 +14,9 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/file_group.h"
-#include "lobefit/base/pending_file.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/files/file_group.h"
+#include "lobefit/base/files/pending_file.h"
 
 namespace lobefit {
 namespace {

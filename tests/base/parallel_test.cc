@@ -1,4 +1,4 @@
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 
 #include <atomic>
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lobefit/base/threads.h"
+#include "lobefit/base/process/threads.h"
 
 namespace lobefit {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 #include <bit>
 #include <charconv>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lobefit/base/plain_decimal.h"
+#include "lobefit/base/text/plain_decimal.h"
 
 namespace lobefit {
 namespace {

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/batch/run/journal.h"
 #include "lobefit/batch/run/run.h"
 

@@ -22,8 +22,8 @@
 
 #include "tests/support/paths.h"
 
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/core/ellipsoid/ellipsoid.h"
 #include "lobefit/core/masking/lune.h"
 #include "lobefit/core/radial/slope_distribution.h"

@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/core/brdf/brdf.h"
 #include "lobefit/core/ndf/slope_ndf.h"
 #include "lobefit/fit/fit.h"

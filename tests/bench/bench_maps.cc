@@ -16,10 +16,10 @@
 
 #include <ceres/ceres.h>
 
-#include "lobefit/base/csv_fields.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
-#include "lobefit/base/threads.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/process/threads.h"
+#include "lobefit/base/text/csv_fields.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/fit/fit_many.h"
 #include "lobefit/maps/bands.h"
 #include "lobefit/maps/synthetic/hills.h"

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/io/read.h"
 #include "lobefit/report/panels/isotropic_lookup.h"

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/core/fresnel/fresnel.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/solve.h"

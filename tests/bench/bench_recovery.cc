@@ -9,7 +9,7 @@
 #include "tests/support/synthetic.h"
 #include <fmt/format.h>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/core/ellipsoid/off_center.h"
 #include "lobefit/fit/fit.h"
 

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/automatic.h"
 #include "lobefit/fit/ladder.h"
 #include "lobefit/synthesis/random.h"

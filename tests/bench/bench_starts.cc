@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/search/solve.h"
 #include "lobefit/fit/search/starts.h"

@@ -6,7 +6,7 @@
 #include "tests/support/run_program.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 
 namespace lobefit {
 namespace {

@@ -5,7 +5,7 @@
 #include "tests/report/synthetic.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -12,7 +12,7 @@
 #include "tests/export/materials.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/export/export.h"
 #include "lobefit/export/targets.h"
 #include "lobefit/math/directions.h"

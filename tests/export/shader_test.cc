@@ -11,8 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/export/targets/brdf_explorer/write.h"
 #include "lobefit/export/targets/glsl/write.h"
 #include "lobefit/export/targets/osl/write.h"

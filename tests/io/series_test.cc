@@ -5,7 +5,7 @@
 
 #include "tests/io/csv/read_csv.h"
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 
 namespace lobefit {
 namespace {

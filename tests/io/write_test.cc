@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/io/alta/writer.h"
 #include "lobefit/io/bsdf_xml/writer.h"
 #include "lobefit/io/csv/writer.h"

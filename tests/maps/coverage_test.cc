@@ -4,7 +4,7 @@
 #include "tests/maps/texels.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 
 namespace lobefit {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/base64.h"
+#include "lobefit/base/text/base64.h"
 #include "lobefit/maps/report/web/html.h"
 #include "lobefit/plot/color.h"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/maps/output/pixels.h"
 #include "lobefit/maps/run.h"
 #include "lobefit/maps/stack/normal_map.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/core/brdf/brdf.h"
 #include "lobefit/core/brdf/ggx_lobe.h"
 #include "lobefit/maps/output/pixels.h"

@@ -8,8 +8,8 @@
 #include <regex>
 #include <string>
 
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit::test {
 

@@ -15,7 +15,7 @@
 #include "tests/support/paths.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/series.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/measurement/spectrum.h"

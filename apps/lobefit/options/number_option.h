@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 

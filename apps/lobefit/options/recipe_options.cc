@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/fit/automatic.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/material/json.h"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/material/json.h"
 
 namespace lobefit {

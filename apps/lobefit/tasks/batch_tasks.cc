@@ -4,10 +4,10 @@
 
 #include "options/report_formats.h"
 
-#include "lobefit/base/base64.h"
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/base64.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/base/version.h"
 #include "lobefit/batch/results/result_row.h"
 #include "lobefit/batch/results/sphere_picture.h"

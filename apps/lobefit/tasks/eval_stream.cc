@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/csv_fields.h"
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/csv_fields.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/progress.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/process/progress.h"
 #include "lobefit/maps/bands.h"
 #include "lobefit/maps/document.h"
 #include "lobefit/maps/report/page.h"

@@ -8,7 +8,7 @@
 
 #include "verbs/verb.h"
 
-#include "lobefit/base/progress.h"
+#include "lobefit/base/process/progress.h"
 #include "lobefit/batch/list/shard.h"
 #include "lobefit/validate/experiment.h"
 

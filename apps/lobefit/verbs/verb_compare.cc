@@ -14,8 +14,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/export/import.h"
 #include "lobefit/fit/compare.h"
 #include "lobefit/fit/fit.h"

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/io/series.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/write.h"

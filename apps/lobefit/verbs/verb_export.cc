@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/export/export.h"
 #include "lobefit/export/targets.h"
 #include "lobefit/material/json.h"

@@ -14,8 +14,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/progress.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/process/progress.h"
 #include "lobefit/fit/ladder.h"
 #include "lobefit/io/series.h"
 #include "lobefit/material/json.h"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/formats.h"
 #include "lobefit/io/text/options.h"
 

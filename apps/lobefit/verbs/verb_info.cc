@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/write.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/checks/statistics.h"

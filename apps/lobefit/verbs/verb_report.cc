@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/series.h"
 #include "lobefit/material/json.h"
 #include "lobefit/math/vec.h"

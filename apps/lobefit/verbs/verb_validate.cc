@@ -14,8 +14,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/progress.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/progress.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/batch/results/results.h"
 #include "lobefit/io/read.h"
 #include "lobefit/validate/calibration.h"

@@ -11,8 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/printable.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/printable.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/batch/index/assets.h"
 #include "lobefit/math/student_t.h"
 #include "lobefit/report/web/template.h"

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/batch/list/csv_text.h"
 #include "lobefit/batch/list/series.h"
 #include "lobefit/io/series.h"

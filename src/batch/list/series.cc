@@ -8,7 +8,7 @@
 #include <glob.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/read.h"
 #include "lobefit/io/series.h"
 

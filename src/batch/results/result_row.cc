@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/recipe/recipe.h"
 
 namespace lobefit {

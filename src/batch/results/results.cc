@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/batch/list/csv_text.h"
 #include "lobefit/batch/results/result_row.h"
 #include "lobefit/batch/run/flat_members.h"

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/base/version.h"
 
 namespace lobefit {

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <thread>
 
-#include "lobefit/base/file_group.h"
+#include "lobefit/base/files/file_group.h"
 
 namespace lobefit {
 

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "lobefit/base/control_group.h"
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/control_group.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

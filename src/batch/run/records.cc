@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/batch/run/segment_lines.h"
 
 namespace lobefit {

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/batch/run/journal.h"
 #include "lobefit/batch/run/memory_limit.h"
 #include "lobefit/batch/run/task_files.h"

@@ -9,7 +9,7 @@
 #include <functional>
 #include <string>
 
-#include "lobefit/base/file_group.h"
+#include "lobefit/base/files/file_group.h"
 #include "lobefit/batch/list/shard.h"
 #include "lobefit/batch/list/work_list.h"
 #include "lobefit/batch/run/records.h"

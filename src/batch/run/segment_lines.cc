@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/batch/run/flat_members.h"
 
 namespace lobefit {

@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/io/series.h"
 
 namespace lobefit {

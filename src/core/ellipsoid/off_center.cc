@@ -5,7 +5,7 @@
 #include <string>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/core/ellipsoid/canonical_axes.h"
 #include "lobefit/core/ellipsoid/principal_axes.h"
 #include "lobefit/core/ellipsoid/weighted_form.h"

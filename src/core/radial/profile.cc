@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/quadrature.h"
 
 namespace lobefit {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/export/targets/radial_text.h"
 #include "lobefit/export/targets/text.h"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/fit/inference/sample_rows.h"
 #include "lobefit/fit/search/solve.h"
 #include "lobefit/fit/search/symmetric_eigen.h"

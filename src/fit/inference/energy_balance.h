@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/core/brdf/model_energy.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/incidence.h"

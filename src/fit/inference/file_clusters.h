@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/measurement/incidence.h"

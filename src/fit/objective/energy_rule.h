@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/objective/coordinates.h"
 
 namespace lobefit {

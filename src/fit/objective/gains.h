@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/objective/kernel.h"
 #include "lobefit/measurement/incidence.h"
 

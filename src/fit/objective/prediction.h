@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/objective/kernel.h"
 #include "lobefit/fit/objective/sigma_weights.h"
 #include "lobefit/measurement/measurement.h"

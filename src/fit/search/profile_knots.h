@@ -2,7 +2,7 @@
 // the masking alone.
 #pragma once
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/search/fit_options.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"

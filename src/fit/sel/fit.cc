@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/progress.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/process/progress.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/fit/objective/prediction.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/sel/envelope.h"

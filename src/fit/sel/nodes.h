@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/progress.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/process/progress.h"
 #include "lobefit/fit/sel/slice.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"

@@ -1,7 +1,7 @@
 // The last step of a table of lobes that bounds a measurement.
 #pragma once
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
 

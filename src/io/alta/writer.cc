@@ -3,9 +3,9 @@
 #include <cmath>
 #include <ostream>
 
-#include "lobefit/base/file.h"
-#include "lobefit/base/printable.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/printable.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/alta/header.h"
 #include "lobefit/math/directions.h"
 

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/csv/rows/wavelengths.h"
 #include "lobefit/io/text/json_text.h"

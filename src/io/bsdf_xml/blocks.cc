@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/place.h"
 
 namespace lobefit {

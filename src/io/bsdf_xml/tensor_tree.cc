@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

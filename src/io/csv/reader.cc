@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "lobefit/base/csv_fields.h"
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/csv_fields.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/head_lines.h"
 #include "lobefit/io/csv/head/header.h"
 #include "lobefit/io/csv/rows/distinctions.h"

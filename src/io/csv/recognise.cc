@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/header.h"
 #include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/csv/reader.h"

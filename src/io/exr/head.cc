@@ -5,7 +5,7 @@
 #include <cstring>
 #include <optional>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/place.h"
 
 namespace lobefit {

@@ -16,7 +16,7 @@
 #include <ImfStringAttribute.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/exr/head.h"
 #include "lobefit/io/exr/map.h"

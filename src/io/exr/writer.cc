@@ -12,10 +12,10 @@
 #include <ImfStringAttribute.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/printable.h"
-#include "lobefit/base/threads.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/process/threads.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/io/text/options.h"
 
 namespace lobefit {

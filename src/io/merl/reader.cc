@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/io/merl/table.h"
 
 namespace lobefit {

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/math/directions.h"

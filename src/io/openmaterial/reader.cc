@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/rows/wavelengths.h"
 #include "lobefit/io/text/json_text.h"
 #include "lobefit/io/text/place.h"

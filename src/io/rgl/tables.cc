@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {

@@ -7,7 +7,7 @@
 #include <ostream>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 
 namespace lobefit {
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/units.h"
 #include "lobefit/math/vec.h"
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/format.h"
 #include "lobefit/math/vec.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/io/utia/grid.h"

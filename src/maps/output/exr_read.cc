@@ -8,7 +8,7 @@
 #include <OpenEXR/ImfTiledInputPart.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/maps/output/exr.h"
 
 namespace lobefit {

@@ -16,8 +16,8 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/pending_file.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/files/pending_file.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/maps/output/exr.h"
 
 namespace lobefit {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/maps/output/pixels.h"
 
 namespace lobefit {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobefit/base/progress.h"
+#include "lobefit/base/process/progress.h"
 #include "lobefit/maps/bands.h"
 #include "lobefit/maps/stack/geometry.h"
 #include "lobefit/maps/stack/reader.h"

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/printable.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/printable.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/maps/stack/layouts.h"
 #include "lobefit/math/directions.h"
 

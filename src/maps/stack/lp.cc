@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/printable.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/printable.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/maps/stack/layouts.h"
 
 namespace lobefit {

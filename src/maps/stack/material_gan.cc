@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/maps/stack/layouts.h"
 
 namespace lobefit {

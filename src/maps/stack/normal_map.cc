@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 
 namespace lobefit {
 namespace {

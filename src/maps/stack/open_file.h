@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 
 namespace lobefit {
 

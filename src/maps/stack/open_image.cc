@@ -2,7 +2,7 @@
 #include <fstream>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/maps/stack/exr_parts.h"
 
 namespace lobefit {

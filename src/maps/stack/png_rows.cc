@@ -5,7 +5,7 @@
 #include <png.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/maps/stack/image_rows.h"
 #include "lobefit/maps/stack/open_file.h"
 

@@ -9,7 +9,7 @@
 #include <tiffio.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/maps/stack/image_rows.h"
 
 namespace lobefit {

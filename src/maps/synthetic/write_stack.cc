@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/progress.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/process/progress.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/maps/output/pixels.h"
 #include "lobefit/maps/stack/geometry.h"
 #include "lobefit/synthesis/random.h"

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/progress.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/process/progress.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/base/version.h"
 #include "lobefit/maps/textures/map_target.h"
 #include "lobefit/maps/textures/meter.h"

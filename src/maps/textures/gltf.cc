@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/base/version.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/gltf/swatch.h"

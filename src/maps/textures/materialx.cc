@@ -1,7 +1,7 @@
 // MaterialX: BSDF nodes that hold the fit's own numbers.
 #include <fmt/format.h>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/materialx/nodes.h"
 #include "lobefit/export/targets/materialx/write.h"

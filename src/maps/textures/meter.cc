@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/synthesis/random.h"
 

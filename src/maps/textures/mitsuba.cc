@@ -1,8 +1,8 @@
 // Mitsuba 3: blendbsdf of roughconductor and diffuse under a normal map.
 #include <fmt/format.h>
 
-#include "lobefit/base/file.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/mitsuba/components.h"
 #include "lobefit/export/targets/text.h"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/materialx/nodes.h"
 #include "lobefit/export/targets/materialx/write.h"

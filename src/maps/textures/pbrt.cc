@@ -1,7 +1,7 @@
 // pbrt-v4: a mix of conductor and diffuse.
 #include <fmt/format.h>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/pbrt/tokens.h"
 #include "lobefit/export/targets/text.h"

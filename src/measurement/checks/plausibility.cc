@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/statistics.h"
 #include "lobefit/measurement/incidence.h"
 

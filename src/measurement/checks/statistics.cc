@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/measurement/interpolation.h"

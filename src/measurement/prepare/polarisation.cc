@@ -6,7 +6,7 @@
 #include <set>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/measurement/pair_index.h"
 
 namespace lobefit {

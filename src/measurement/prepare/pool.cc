@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/statistics.h"
 #include "lobefit/measurement/pair_index.h"
 #include "lobefit/measurement/prepare/repeats.h"

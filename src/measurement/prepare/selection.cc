@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/plot/layout.h"
 #include "lobefit/plot/png.h"
 #include "lobefit/plot/style.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/axes.h"
 #include "lobefit/plot/color.h"

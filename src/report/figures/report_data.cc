@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/style.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/style.h"
 #include "lobefit/report/figures/field_image.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/plot/axes.h"
 #include "lobefit/plot/style.h"
 #include "lobefit/plot/table.h"

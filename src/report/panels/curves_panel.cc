@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/axes.h"
 #include "lobefit/plot/style.h"

@@ -7,8 +7,8 @@
 #include <memory>
 #include <utility>
 
-#include "lobefit/base/parallel.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/plot/style.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 
 namespace lobefit {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/core/ndf/slope_ndf.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/color.h"

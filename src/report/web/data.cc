@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/base64.h"
+#include "lobefit/base/text/base64.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/color.h"
 #include "lobefit/plot/style.h"

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/base64.h"
-#include "lobefit/base/printable.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/base64.h"
+#include "lobefit/base/text/printable.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/material/badge.h"
 #include "lobefit/plot/png.h"
 #include "lobefit/report/panels/page.h"

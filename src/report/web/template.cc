@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "lobefit/base/base64.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/base64.h"
 
 namespace lobefit {
 

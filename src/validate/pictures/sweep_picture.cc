@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/validate/pictures/picture.h"
 #include "lobefit/validate/pictures/picture_page.h"
 

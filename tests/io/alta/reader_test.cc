@@ -8,7 +8,7 @@
 
 #include "tests/support/read_bytes.h"
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/alta/directions.h"
 
 namespace lobefit {

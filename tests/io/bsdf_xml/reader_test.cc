@@ -5,7 +5,7 @@
 
 #include "tests/support/read_bytes.h"
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/bsdf_xml/angle_basis.h"
 #include "lobefit/io/bsdf_xml/tensor_tree.h"
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/io/exr/writer.h"
 #include "lobefit/io/read.h"
 #include "lobefit/io/text/options.h"

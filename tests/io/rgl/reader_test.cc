@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/io/read.h"
 #include "lobefit/io/rgl/angles.h"
 #include "lobefit/io/rgl/brdf.h"

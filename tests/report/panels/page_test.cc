@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/report/report.h"
 
 namespace lobefit {

@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/base64.h"
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/base64.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/json_text.h"
 #include "lobefit/renderer/gltf_material.h"
 #include "lobefit/renderer/normal_map.h"

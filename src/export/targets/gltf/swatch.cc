@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/base/base64.h"
+#include "lobefit/base/text/base64.h"
 #include "lobefit/math/vec.h"
 
 namespace lobefit {

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/base64.h"
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/base64.h"
 #include "lobefit/base/version.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/gltf/read.h"

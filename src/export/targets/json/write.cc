@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/core/brdf/brdf.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/sel/document.h"

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/export/targets/materialx/inputs.h"
 #include "lobefit/io/text/xml_file.h"
 #include "lobefit/renderer/open_pbr.h"

@@ -1,6 +1,6 @@
 #include "lobefit/export/targets/merl/write.h"
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/merl/read.h"
 #include "lobefit/io/merl/writer.h"

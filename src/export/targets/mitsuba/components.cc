@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/export/targets/spectra.h"
 #include "lobefit/export/targets/text.h"
 

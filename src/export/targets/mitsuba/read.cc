@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/export/targets/spectra.h"
 #include "lobefit/export/targets/text.h"
 #include "lobefit/io/text/xml_file.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "lobefit/base/printable.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/printable.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 

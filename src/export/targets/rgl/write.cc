@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/core/brdf/lobe.h"
 #include "lobefit/export/targets/features.h"
 #include "lobefit/export/targets/spectra.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/export/targets/sel/glsl.h"
 #include "lobefit/material/json.h"
 

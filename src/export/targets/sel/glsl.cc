@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/export/targets/shader_text.h"
 #include "lobefit/export/targets/text.h"
 #include "lobefit/renderer/fitted_brdf.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "lobefit/base/csv_fields.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/csv_fields.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/head_lines.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/no_value.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lobefit/base/csv_fields.h"
+#include "lobefit/base/text/csv_fields.h"
 
 namespace lobefit {
 

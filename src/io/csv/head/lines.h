@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 

@@ -1,8 +1,8 @@
 #include "lobefit/io/csv/head/mapping.h"
 
-#include "lobefit/base/csv_fields.h"
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/csv_fields.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/place.h"
 
 namespace lobefit {

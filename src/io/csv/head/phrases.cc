@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/names/name_rules.h"
 
 namespace lobefit {

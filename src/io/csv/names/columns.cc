@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/names/name_rules.h"
 
 namespace lobefit {

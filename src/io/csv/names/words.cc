@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/names/foreign_words.h"
 #include "lobefit/io/text/units.h"
 

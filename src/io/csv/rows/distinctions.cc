@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "lobefit/base/csv_fields.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/csv_fields.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 

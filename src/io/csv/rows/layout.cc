@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/row_conditions.h"
 #include "lobefit/io/csv/names/name_rules.h"

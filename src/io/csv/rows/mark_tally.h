@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 

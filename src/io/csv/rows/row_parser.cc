@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "lobefit/base/csv_fields.h"
-#include "lobefit/base/plain_decimal.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/csv_fields.h"
+#include "lobefit/base/text/plain_decimal.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/place.h"
 
 namespace lobefit {

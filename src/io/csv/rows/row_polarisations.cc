@@ -1,7 +1,7 @@
 #include "lobefit/io/csv/rows/row_polarisations.h"
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/measurement/prepare/polarisation.h"
 
 namespace lobefit {

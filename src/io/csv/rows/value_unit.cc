@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 

@@ -6,7 +6,7 @@
 #include <Imath/half.h>
 #include <nlohmann/json.hpp>
 
-#include "lobefit/base/base64.h"
+#include "lobefit/base/text/base64.h"
 #include "lobefit/maps/report/tiles.h"
 #include "lobefit/maps/report/web/html.h"
 #include "lobefit/maps/stack/geometry.h"

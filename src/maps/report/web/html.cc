@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/base/base64.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/base64.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/maps/report/tiles.h"
 #include "lobefit/maps/report/web/assets.h"
 #include "lobefit/maps/report/web/data.h"

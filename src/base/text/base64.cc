@@ -1,4 +1,4 @@
-#include "lobefit/base/base64.h"
+#include "lobefit/base/text/base64.h"
 
 #include <cstdint>
 

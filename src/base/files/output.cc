@@ -12,12 +12,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "lobefit/base/descriptor_stream.h"
 #include "lobefit/base/error.h"
-#include "lobefit/base/file.h"
-#include "lobefit/base/file_group.h"
-#include "lobefit/base/pending_file.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/files/descriptor_stream.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/files/file_group.h"
+#include "lobefit/base/files/pending_file.h"
+#include "lobefit/base/text/printable.h"
 
 namespace lobefit {
 namespace {

@@ -1,7 +1,7 @@
 // How many threads an option asks for.
 #pragma once
 
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 
 namespace lobefit {
 

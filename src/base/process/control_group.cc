@@ -1,4 +1,4 @@
-#include "lobefit/base/control_group.h"
+#include "lobefit/base/process/control_group.h"
 
 #include <algorithm>
 #include <fstream>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobefit/base/pending_file.h"
+#include "lobefit/base/files/pending_file.h"
 
 #include <array>
 #include <atomic>
@@ -12,8 +12,8 @@
 #include <sys/random.h>
 #include <unistd.h>
 
-#include "lobefit/base/file.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/files/file.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -1,6 +1,6 @@
-#include "lobefit/base/csv_fields.h"
+#include "lobefit/base/text/csv_fields.h"
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobefit/base/progress.h"
+#include "lobefit/base/process/progress.h"
 
 #include <cstdio>
 #include <utility>

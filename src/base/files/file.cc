@@ -1,4 +1,4 @@
-#include "lobefit/base/file.h"
+#include "lobefit/base/files/file.h"
 
 #include <algorithm>
 #include <array>
@@ -14,9 +14,9 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/memory.h"
-#include "lobefit/base/printable.h"
-#include "lobefit/base/text.h"
+#include "lobefit/base/process/memory.h"
+#include "lobefit/base/text/printable.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "lobefit/base/plain_decimal.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/plain_decimal.h"
+#include "lobefit/base/text/printable.h"
 
 namespace lobefit {
 namespace {

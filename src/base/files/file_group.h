@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lobefit/base/pending_file.h"
+#include "lobefit/base/files/pending_file.h"
 
 namespace lobefit {
 

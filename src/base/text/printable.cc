@@ -1,8 +1,8 @@
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 
 #include <algorithm>
 
-#include "lobefit/base/text.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 namespace {

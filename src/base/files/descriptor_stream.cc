@@ -1,4 +1,4 @@
-#include "lobefit/base/descriptor_stream.h"
+#include "lobefit/base/files/descriptor_stream.h"
 
 #include <array>
 #include <cerrno>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/printable.h"
+#include "lobefit/base/text/printable.h"
 
 namespace lobefit {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobefit/base/memory.h"
+#include "lobefit/base/process/memory.h"
 
 #include <cstdint>
 

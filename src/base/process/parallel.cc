@@ -1,4 +1,4 @@
-#include "lobefit/base/parallel.h"
+#include "lobefit/base/process/parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -13,9 +13,9 @@
 
 #include <sched.h>
 
-#include "lobefit/base/control_group.h"
-#include "lobefit/base/text.h"
-#include "lobefit/base/threads.h"
+#include "lobefit/base/process/control_group.h"
+#include "lobefit/base/process/threads.h"
+#include "lobefit/base/text/text.h"
 
 namespace lobefit {
 
