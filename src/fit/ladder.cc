@@ -30,7 +30,7 @@ constexpr std::size_t kSamples = 4000, kMostFolds = 4, kStarts = 4;
 // Wavelengths that a spectrum is judged by; the shape is that of all, and descents cost the square of their number.
 constexpr std::size_t kMostChannels = 5;
 constexpr std::size_t kMostLobes = 3;
-// A part whose gain in the mean square on held-out directions is beyond chance.
+// A coat whose gain in the mean square on held-out directions is beyond chance.
 constexpr double kMuch = 0.9;
 // Incident directions at which a model's albedo is looked at.
 constexpr std::size_t kIncidences = 6;
@@ -76,6 +76,7 @@ void StartOthersAt(const std::map<std::string, std::vector<double>>& found, std:
     if (others == found.end() || others->second.size() != (parameters[i].per_channel ? channels : 1)) continue;
     if (!recipe->IsFree(i)) continue;
     std::vector<double>& start = recipe->parameters[i].start = others->second;
+    if (recipe->parameters[i].shared) start.resize(1);
     for (double& value : start) value = std::clamp(value, parameters[i].low, parameters[i].high);
   }
 }
@@ -106,6 +107,7 @@ class Ladder {
     options_.starts = std::min(options_.starts, kStarts);
     options_.subsample = kSamples / 4;
     options_.scouting_steps = kScoutingSteps;
+    options_.trial = true;
     const Incidences incidences = GroupByIncidence(measurement);
     wi_ = SpreadIncidences(incidences, simplest.theta_max, kIncidences);
     const std::size_t folds = std::min(kMostFolds, incidences.wi.size());
@@ -356,11 +358,10 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   // Two profiles in each of a spectrum's channels cost minutes, and predict little better.
   const bool spectrum = measurement->channels.names.size() > kMostChannels;
   if (!spectrum) with_curve({{profile}, {profile}}, with_two);
-  // A part that gains much may gain it over one lobe as well, where tails and curves stood in for it.
+  // What a part gains it may gain over one lobe as well, where tails and curves stood in for it; that takes little.
   const auto add_part = [&](const Model& with, const std::string& name, const Model& alone) {
-    const double before = ladder.Best().mean();
-    const Rung* const rung = ladder.Try(with, name, &ladder.Best());
-    if (rung != nullptr && rung->mean() < kMuch * before) ladder.Try(alone, NameOfParts(alone));
+    ladder.Try(with, name, &ladder.Best());
+    ladder.Try(alone, NameOfParts(alone));
   };
   Model interfaced = ladder.Best().recipe.model;
   interfaced.diffuse = Diffuse::kInterfaced;

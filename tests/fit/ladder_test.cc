@@ -113,6 +113,20 @@ TEST(Ladder, OfExactModelsTheOneWithFewestParameters) {
   for (const MetricError& error : material.errors) EXPECT_LT(error.rms, 1e-6) << error.metric;
 }
 
+// A coat's index is one of all channels: what was found for it starts the fit, which reads its recipe as a file's.
+TEST(Ladder, ACoatOverSeveralChannelsIsFittedAsItWasTried) {
+  SyntheticCase truth = OneLobe(Ndf::kGgx, 0.4, 0.4, 0, 0, 0, {0.5, 0.3, 0.2}, {0.1, 0.2, 0.3});
+  truth.model.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered});
+  const std::vector<double> index(3, 1.8), depth(3, 0.0);
+  truth.values.insert(truth.values.begin() + 6, {{0.1}, {0.1}, {0}, {0}, {0}, index, depth});
+  Measurement measurement = Synthetic(truth, SixPolarAngles(), kNoise, 7);
+  const LadderChoice choice = ClimbLadder(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+  ASSERT_THAT(Chosen(choice).name, testing::HasSubstr("coat"));
+  EXPECT_TRUE(choice.warm);
+  EXPECT_EQ(ToToml(ParseRecipe(ToToml(choice.recipe), "chosen")), ToToml(choice.recipe));
+  EXPECT_TRUE(Fit(choice.recipe, {}, &measurement).termination.converged);
+}
+
 TEST(Ladder, TheSameBitsWithOneAndThreeThreads) {
   const SyntheticCase truth = Gray(Ndf::kGgxAnisotropic, 0.3, 0.1);
   const LadderChoice one = ChoiceFor(truth, 5, 1), three = ChoiceFor(truth, 5, 3);

@@ -18,6 +18,9 @@ struct FitOptions {
   // Descents on the subsample end after so many steps, and only those that are best by then go on; 0: each goes on to
   // its minimum.
   int scouting_steps = 0;
+  // The minimum is only compared with those of other models, to a per cent (ladder.h): descents end where a step gains
+  // less than a millionth of the cost.
+  bool trial = false;
   // Called after each model that the automatic choice has judged (ladder.h).
   std::function<void()> on_tried;
 };

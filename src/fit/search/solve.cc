@@ -2,12 +2,29 @@
 
 #include "lobefit/fit/objective/energy_rule.h"
 #include "lobefit/fit/search/descent.h"
+#include "lobefit/fit/search/stand_in.h"
 
 namespace lobefit {
 namespace {
 
 Eigen::VectorXd ToVector(const std::vector<double>& u) {
   return Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()));
+}
+
+DescentOptions ToDescentOptions(const SolveOptions& options) {
+  DescentOptions descent;
+  descent.max_iterations = options.max_iterations;
+  descent.function_tolerance = options.function_tolerance;
+  descent.use_ceres = options.use_ceres;
+  return descent;
+}
+
+Solution ToSolution(const Descent& descent) {
+  return {{descent.u.data(), descent.u.data() + descent.u.size()},
+          descent.cost,
+          descent.converged,
+          descent.iterations,
+          descent.message};
 }
 
 }  // namespace
@@ -58,19 +75,18 @@ BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, Threa
 
 Solution Solve(const Problem& problem, const Layout& layout, const std::vector<double>& start,
                const SolveOptions& options, ThreadPool* pool) {
-  DescentOptions descent_options;
-  descent_options.max_iterations = options.max_iterations;
-  descent_options.function_tolerance = options.function_tolerance;
-  descent_options.use_ceres = options.use_ceres;
   BoundedObjective objective = ObjectiveOf(problem, layout, pool);
   if (layout.size() < options.arrow_from) objective.evaluate_arrow = nullptr;
-  const Descent descent = Descend(objective, ToVector(start), descent_options);
+  const Descent descent = Descend(objective, ToVector(start), ToDescentOptions(options));
   if (problem.gains() != nullptr) problem.gains()->Profile(problem, layout.ToKernel(descent.u.data()), pool);
-  return {{descent.u.data(), descent.u.data() + descent.u.size()},
-          descent.cost,
-          descent.converged,
-          descent.iterations,
-          descent.message};
+  return ToSolution(descent);
+}
+
+Solution SolveByStandIn(const Problem& problem, const Problem& part, const Layout& layout,
+                        const std::vector<double>& start, const SolveOptions& options, ThreadPool* pool) {
+  const double scale = static_cast<double>(problem.size()) / static_cast<double>(part.size());
+  return ToSolution(DescendByStandIn(ObjectiveOf(problem, layout, pool), ObjectiveOf(part, layout, pool), scale,
+                                     ToVector(start), ToDescentOptions(options)));
 }
 
 }  // namespace lobefit

@@ -35,6 +35,11 @@ struct Solution {
 Solution Solve(const Problem& problem, const Layout& layout, const std::vector<double>& start,
                const SolveOptions& options, ThreadPool* pool);
 
+// The same by a subsample's problem, `part`, that stands in for most passes (stand_in.h); without gains.
+// options.max_iterations is the number of passes over the whole.
+Solution SolveByStandIn(const Problem& problem, const Problem& part, const Layout& layout,
+                        const std::vector<double>& start, const SolveOptions& options, ThreadPool* pool);
+
 // Gauss-Newton matrix and gradient of the cost at `u`, and the cost. With gains (Problem::gains), at those that it has:
 // of what the cost is where they follow the model (gains.h), with `links` unless null.
 double Linearise(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool,

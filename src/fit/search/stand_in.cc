@@ -1,0 +1,89 @@
+#include "lobefit/fit/search/stand_in.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lobefit {
+namespace {
+
+// Steps within a round, a twentieth of a pass over the whole each, and the share of the whole's tolerance at which they
+// end.
+constexpr int kStepsWithin = 12;
+constexpr double kShareOfTolerance = 0.3;
+// Where the whole's cost does not fall the stand-in promised too much: its next round is damped, as Marquardt's steps.
+constexpr double kFirstDamping = 0.1, kMostDamping = 1e3;
+
+// `part` with what it lacks of the whole's derivatives at `from`.
+class StandIn {
+ public:
+  StandIn(const BoundedObjective& part, double scale, const Descent& whole, double damping)
+      : part_(part), scale_(scale), from_(whole.u) {
+    Eigen::MatrixXd gram;
+    Eigen::VectorXd gradient;
+    offset_ = whole.cost - scale * part.evaluate(from_, &gram, &gradient);
+    gradient_ = whole.gradient - scale * gradient;
+    gram_ = whole.gram - scale * gram;
+    gram_.diagonal() += damping * whole.gram.diagonal();
+  }
+
+  double Evaluate(const Eigen::VectorXd& u, Eigen::MatrixXd* gram, Eigen::VectorXd* gradient) const {
+    const double cost = part_.evaluate(u, gram, gradient);
+    const Eigen::VectorXd way = u - from_, bent = gram_ * way;
+    if (gram != nullptr) {
+      *gram = scale_ * *gram + gram_;
+      *gradient = scale_ * *gradient + gradient_ + bent;
+    }
+    return scale_ * cost + offset_ + (gradient_ + 0.5 * bent).dot(way);
+  }
+
+ private:
+  const BoundedObjective& part_;
+  double scale_, offset_;
+  Eigen::VectorXd from_, gradient_;
+  Eigen::MatrixXd gram_;
+};
+
+}  // namespace
+
+Descent DescendByStandIn(const BoundedObjective& whole, const BoundedObjective& part, double scale,
+                         const Eigen::VectorXd& start, const DescentOptions& options) {
+  Descent at;
+  at.u = start.cwiseMax(whole.low).cwiseMin(whole.high);
+  at.cost = whole.evaluate(at.u, &at.gram, &at.gradient);
+  DescentOptions within;
+  within.max_iterations = kStepsWithin;
+  within.function_tolerance = kShareOfTolerance * options.function_tolerance;
+  Eigen::MatrixXd gram;
+  Eigen::VectorXd gradient;
+  double damping = 0;
+  while (std::isfinite(at.cost) && at.iterations < options.max_iterations && damping < kMostDamping) {
+    ++at.iterations;
+    const StandIn stand_in(part, scale, at, damping);
+    BoundedObjective within_round = part;
+    within_round.residuals = whole.residuals;
+    within_round.evaluate_arrow = nullptr;
+    within_round.evaluate = [&stand_in](const Eigen::VectorXd& u, Eigen::MatrixXd* of_gram,
+                                        Eigen::VectorXd* of_gradient) {
+      return stand_in.Evaluate(u, of_gram, of_gradient);
+    };
+    const Eigen::VectorXd u = Descend(within_round, at.u, within).u;
+    const double cost = whole.evaluate(u, &gram, &gradient);
+    if (!(cost < at.cost)) {
+      damping = std::max(kFirstDamping, 10 * damping);
+      continue;
+    }
+    // A small decrease under strong damping says nothing of the minimum.
+    const bool last = damping <= kFirstDamping && at.cost - cost <= options.function_tolerance * at.cost;
+    damping = damping > kFirstDamping / 3 ? damping / 3 : 0;
+    at.u = u;
+    at.cost = cost;
+    at.gram.swap(gram);
+    at.gradient.swap(gradient);
+    if (last) break;
+  }
+  at.converged = IsMinimum(whole, at.u, at.cost, at.gram, at.gradient, options.function_tolerance, nullptr);
+  if (!at.converged) at.message = "the cost still falls where the descent ended";
+  return at;
+}
+
+}  // namespace lobefit

@@ -1,0 +1,103 @@
+// A subsample that stands in for all samples: the minimum is that of all, in fewer passes over them.
+#include "lobefit/fit/search/stand_in.h"
+
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace lobefit {
+namespace {
+
+// a exp(-b x) + c fitted to what no such curve describes, with noise: a Gauss-Newton step leaves 77 % of the gradient.
+class Decay {
+ public:
+  explicit Decay(std::size_t samples) {
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> noise(0, 0.05);
+    for (std::size_t i = 0; i < samples; ++i) {
+      const double x = 4 * (static_cast<double>(i) + 0.5) / static_cast<double>(samples);
+      x_.push_back(x);
+      y_.push_back(1 / (1 + x * x) + 0.3 * std::sin(2 * x + 1.5) + noise(random));
+    }
+  }
+
+  // Every `stride`-th sample; `passes` counts, unless null.
+  BoundedObjective Of(std::size_t stride, const Eigen::Vector3d& low, int* passes) const {
+    BoundedObjective objective;
+    objective.low = low;
+    objective.high = Eigen::Vector3d::Constant(5);
+    objective.residuals = x_.size() / stride;
+    objective.evaluate = [this, stride, passes](const Eigen::VectorXd& u, Eigen::MatrixXd* gram,
+                                                Eigen::VectorXd* gradient) {
+      if (passes != nullptr) ++*passes;
+      double cost = 0;
+      if (gram != nullptr) {
+        gram->setZero(3, 3);
+        gradient->setZero(3);
+      }
+      for (std::size_t i = 0; i < x_.size(); i += stride) {
+        const double e = std::exp(-u(1) * x_[i]), r = u(0) * e + u(2) - y_[i];
+        const Eigen::Vector3d j(e, -u(0) * x_[i] * e, 1);
+        cost += r * r / 2;
+        if (gram == nullptr) continue;
+        *gram += j * j.transpose();
+        *gradient += r * j;
+      }
+      return cost;
+    };
+    return objective;
+  }
+
+ private:
+  std::vector<double> x_, y_;
+};
+
+constexpr std::size_t kStride = 16;
+
+TEST(StandIn, EndsAtTheMinimumOfAllSamplesInFewerPasses) {
+  const Decay decay(20000);
+  const Eigen::Vector3d low = Eigen::Vector3d::Constant(-5);
+  int steps = 0, rounds = 0;
+  const BoundedObjective whole = decay.Of(1, low, &steps), counted = decay.Of(1, low, &rounds);
+  const BoundedObjective part = decay.Of(kStride, low, nullptr);
+  DescentOptions options;
+  options.function_tolerance = 1e-10;
+  const Eigen::VectorXd start = Descend(part, Eigen::Vector3d(1.4, 1.4, 0.1), options).u;
+  const Descent expected = Descend(whole, start, options);
+  const Descent found = DescendByStandIn(counted, part, kStride, start, options);
+  ASSERT_TRUE(expected.converged);
+  EXPECT_TRUE(found.converged);
+  EXPECT_LT(found.cost, expected.cost * (1 + 1e-9));
+  EXPECT_LT((found.u - expected.u).norm(), 1e-4);
+  EXPECT_LT(2 * rounds, steps) << rounds << " " << steps;
+  EXPECT_GT((start - expected.u).norm(), 1e-3);  // the part's own minimum is another
+}
+
+TEST(StandIn, HoldsTheBoundsAndAsksTheWholeWhetherItIsAMinimum) {
+  const Decay decay(20000);
+  const Eigen::Vector3d low(-5, -5, 0.25), start(1.4, 1.4, 0.1);
+  const BoundedObjective whole = decay.Of(1, low, nullptr);
+  const Descent found = DescendByStandIn(whole, decay.Of(kStride, low, nullptr), kStride, start, {});
+  EXPECT_TRUE(found.converged);
+  EXPECT_EQ(found.u(2), 0.25);
+  EXPECT_TRUE(IsHeld(whole, found.u, found.gradient, 2));
+  DescentOptions once;
+  once.max_iterations = 1;
+  EXPECT_FALSE(DescendByStandIn(whole, decay.Of(kStride, low, nullptr), kStride, start, once).converged);
+}
+
+// Samples that know nothing of a coordinate promise whatever is asked of it: damping holds them.
+TEST(StandIn, APoorOneIsDamped) {
+  const Decay decay(20000);
+  const Eigen::Vector3d low = Eigen::Vector3d::Constant(-5), start(1.4, 1.4, 0.1);
+  const BoundedObjective whole = decay.Of(1, low, nullptr);
+  const Descent expected = Descend(whole, start, {});
+  const Descent found = DescendByStandIn(whole, decay.Of(6000, low, nullptr), 6000, start, {});
+  EXPECT_LT(found.cost, expected.cost * (1 + 1e-6));
+}
+
+}  // namespace
+}  // namespace lobefit
