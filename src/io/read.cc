@@ -131,6 +131,11 @@ void RequireLines(const InputFile& file) {
   }
 }
 
+// Prose with a table, which may name angles.
+bool IsProse(const std::filesystem::path& path) {
+  return ToLower(path.filename().string()).starts_with("readme") || ToLower(path.extension().string()) == ".md";
+}
+
 }  // namespace
 
 const Format& RecogniseFormat(const InputFile& file) {
@@ -160,7 +165,8 @@ bool HoldsMeasurement(const std::filesystem::path& path, bool any_rows) {
     const DecodedFile file(path);
     try {
       const InputFile input = {path, file.bytes()};
-      return RecogniseFormat(input).name != std::string_view("csv") || any_rows || NamesDirections(input);
+      if (RecogniseFormat(input).name != std::string_view("csv")) return true;
+      return !IsProse(path) && (any_rows || NamesDirections(input));
     } catch (const InputError&) {
       return false;
     }

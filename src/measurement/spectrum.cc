@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "lobefit/base/error.h"
@@ -282,6 +283,16 @@ ChannelMap FromList(const std::string& choice, const Channels& channels) {
 }
 
 }  // namespace
+
+Channels ChannelsNamed(std::vector<std::string> names) {
+  Channels channels = {std::move(names), {}};
+  for (const std::string_view name : channels.names) {
+    const std::optional<double> nm = name.ends_with("nm") ? ParseDouble(name.substr(0, name.size() - 2)) : std::nullopt;
+    if (!nm || !(*nm > 0)) return {std::move(channels.names), {}};
+    channels.wavelengths_nm.push_back(*nm);
+  }
+  return channels;
+}
 
 bool CoversVisible(const std::vector<double>& wavelengths_nm) {
   const auto [low, high] = std::minmax_element(wavelengths_nm.begin(), wavelengths_nm.end());

@@ -31,6 +31,9 @@ struct ChannelMap {
 // 650 nm.
 ChannelMap MakeChannelMap(const std::string& choice, const Channels& channels);
 
+// Channels of these names, with wavelengths where each is one: "550nm".
+Channels ChannelsNamed(std::vector<std::string> names);
+
 // Whether the wavelengths cover 430 to 650 nm, as colours need it.
 bool CoversVisible(const std::vector<double>& wavelengths_nm);
 

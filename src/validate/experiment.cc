@@ -14,6 +14,7 @@
 #include "lobefit/math/vec.h"
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/measurement/prepare/pool.h"
+#include "lobefit/measurement/spectrum.h"
 
 namespace lobefit {
 namespace {
@@ -59,7 +60,7 @@ Measurement TurnedMeasurement(const Experiment& experiment, const Truth& truth, 
   noise.misalignment_x = -noise.misalignment_x;
   noise.misalignment_y = -noise.misalignment_y;
   Measurement measurement =
-      Synthesise(directions, {truth.channels, {}}, BrdfOf(truth), noise, seed, SmallestAlpha(truth));
+      Synthesise(directions, ChannelsNamed(truth.channels), BrdfOf(truth), noise, seed, SmallestAlpha(truth));
   measurement.samples.sample_azimuth.assign(measurement.samples.size(), kPi);
   return measurement;
 }
@@ -68,7 +69,7 @@ Measurement MeasurementOf(const Experiment& experiment, const Truth& truth, std:
   const std::uint64_t first = StreamSeed(seed, kNoise);
   const Noise noise = DrawnNoise(experiment.noise, first);
   Measurement measurement =
-      Synthesise(experiment.directions, {truth.channels, {}}, BrdfOf(truth), noise, first, SmallestAlpha(truth));
+      Synthesise(experiment.directions, ChannelsNamed(truth.channels), BrdfOf(truth), noise, first, SmallestAlpha(truth));
   if (experiment.turned) {
     measurement = Pool(
         {std::move(measurement), TurnedMeasurement(experiment, truth, noise, StreamSeed(seed, kTurnedNoise))}, false);

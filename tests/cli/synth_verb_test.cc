@@ -54,6 +54,15 @@ TEST_F(SynthVerb, TheSamplesAreMadeByTheCommandsOfTheirReadme) {
   EXPECT_GE(made, 3);
 }
 
+TEST_F(SynthVerb, OneWavelengthStaysOne) {
+  const ProgramResult result = Shell(
+      "lobefit synth $SOURCE/samples/satin_plastic.toml --channels 633nm --theta-i 30 --detector-step 30 --out "
+      "laser.csv "
+      "&& lobefit info laser.csv");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("channels     633nm"), std::string::npos) << result.out;
+}
+
 TEST_F(SynthVerb, SynthesisesFromAMaterialToo) {
   ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ggx --no-report").exit_code, 0);
   const ProgramResult result = Shell(

@@ -67,6 +67,12 @@ TEST(Series, WhatElseLiesInAFolderIsNamed) {
   const Measurement m = ReadSeries({folder.string()}, {});
   EXPECT_EQ(m.samples.size(), 1U);
   EXPECT_TRUE(HasRemark(m, "holds 1 file that holds no measurement (README.txt) too"));
+  // Prose may hold a table that names an angle, and a list of what was measured has those of the light.
+  WriteFileAtomically(folder / "README.txt", "Samples:\n\nincidence, receiver, note\n10, 20, 3\n30, 40, 5\n");
+  WriteFileAtomically(folder / "files.txt", "incidence, samples\n10, 3\n30, 4\n");
+  const Measurement again = ReadSeries({folder.string()}, {});
+  EXPECT_EQ(again.samples.size(), 1U);
+  EXPECT_TRUE(HasRemark(again, "holds 2 files that hold no measurement (README.txt, files.txt) too"));
   // What is one but cannot be read is no such file.
   WriteFileAtomically(folder / "b.csv", "theta_i,theta_s,BSDF\n10,-20,one\n");
   EXPECT_THROW(ReadSeries({folder.string()}, {}), InputError);

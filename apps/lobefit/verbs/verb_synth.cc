@@ -11,6 +11,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/io/csv/writer.h"
 #include "lobefit/io/write.h"
+#include "lobefit/measurement/spectrum.h"
 #include "lobefit/validate/truth_file.h"
 
 namespace lobefit {
@@ -33,7 +34,7 @@ int RunSynth(const SynthVerb& verb, const CommonOptions& common) {
   RequireApertureWithin(layout, noise);
   const BrdfFunction brdf = BrdfOf(truth);
   Measurement measurement =
-      Synthesise(layout.directions, {truth.channels, {}}, brdf, noise, verb.synthesis.seed(), SmallestAlpha(truth));
+      Synthesise(layout.directions, ChannelsNamed(truth.channels), brdf, noise, verb.synthesis.seed(), SmallestAlpha(truth));
   measurement.isotropic = layout.isotropic;
   measurement.source = "synthetic";
   const TruthRecord record = {truth, noise, verb.synthesis.seed(), common.command};

@@ -272,6 +272,7 @@ class CsvReader {
       array->reserve(rows);
     for (std::vector<double>& array : samples.values) array.reserve(rows);
     samples.origin.reserve(rows);
+    if (HasWeights()) samples.weight.reserve(rows);
   }
 
   bool PassesFilters(const RowParser& row) const {
@@ -297,11 +298,23 @@ class CsvReader {
       ranges_[k].first = std::min(ranges_[k].first, number);
       ranges_[k].second = std::max(ranges_[k].second, number);
     }
-    if (!row.marks().empty()) marks_.Add(row.marks(), line);
+    if (!row.marks().empty()) marks_.Add(row.marks(), line, header_.side_tables.empty());
     for (const ValueGroup& group : layout_.groups) {
+      if (!group.coordinates.empty() && !TakeCoordinates(row, group)) continue;
       for (const auto& [coordinate, number] : group.fixed) at_[static_cast<std::size_t>(coordinate)] = number;
       AddSample(row, group, line, builder);
     }
+  }
+
+  // Of one of several tables side by side; false below its end.
+  bool TakeCoordinates(const RowParser& row, const ValueGroup& group) {
+    bool any = false;
+    for (const auto& [coordinate, column] : group.coordinates) {
+      at_[static_cast<std::size_t>(coordinate)] = row.Number(column);
+      any = any || !std::isnan(row.Number(column));
+    }
+    return any || std::any_of(group.values.begin(), group.values.end(),
+                              [&](std::size_t column) { return !std::isnan(row.Number(column)); });
   }
 
   void AddSample(const RowParser& row, const ValueGroup& group, std::uint32_t line, MeasurementBuilder* builder) {
@@ -422,11 +435,11 @@ class CsvReader {
 
   // A sample without an uncertainty gets the middle one of the others.
   void FillUnknown(std::vector<double>* sigma) {
+    if (std::none_of(sigma->begin(), sigma->end(), [](double s) { return std::isnan(s); })) return;
     std::vector<double> known;
     for (const double s : *sigma) {
       if (!std::isnan(s)) known.push_back(s);
     }
-    if (known.size() == sigma->size()) return;
     notes_.remarks.push_back(std::to_string(sigma->size() - known.size()) + " samples have no uncertainty" +
                              (known.empty() ? "; none was used" : "; the median of the others stands for it"));
     if (known.empty()) {

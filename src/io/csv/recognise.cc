@@ -42,7 +42,18 @@ bool NamesDirections(const InputFile& file) {
   };
   try {
     const CsvHeader header = ReadCsvHeader(file, "");
-    return header.head_coordinate || std::any_of(header.columns.begin(), header.columns.end(), is_direction);
+    // Angles of incidence alone are a list of what was measured, not a measurement.
+    const auto of_light = [](Coordinate coordinate) {
+      return coordinate == Coordinate::kThetaI || coordinate == Coordinate::kPhiI || coordinate == Coordinate::kBeta0;
+    };
+    return header.head_coordinate ||
+           std::any_of(header.columns.begin(), header.columns.end(),
+                       [&](const CsvColumn& column) {
+                         return is_direction(column) &&
+                                (column.role == ColumnRole::kFixed || !of_light(column.coordinate));
+                       }) ||
+           std::any_of(header.keys.fixed.begin(), header.keys.fixed.end(),
+                       [&](const FixedCoordinate& fixed) { return !of_light(fixed.coordinate); });
   } catch (const InputError&) {
     // Such as a file that ends after its names.
   }

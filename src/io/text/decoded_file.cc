@@ -69,6 +69,20 @@ const char* Utf16Without(std::string_view bytes) {
   return nullptr;
 }
 
+// Text in any letters behind a mark of UTF-16: no control characters, and an end of a line.
+bool IsUtf16Text(std::string_view bytes, bool little) {
+  const std::size_t size = std::min(bytes.size() & ~std::size_t{1}, kHead);
+  bool ends_line = false;
+  for (std::size_t i = 0; i < size; i += 2) {
+    const auto low = static_cast<unsigned char>(bytes[little ? i : i + 1]),
+               high = static_cast<unsigned char>(bytes[little ? i + 1 : i]);
+    if (high != 0) continue;
+    if (!IsTextByte(low)) return false;
+    ends_line = ends_line || low == '\n' || low == '\r';
+  }
+  return ends_line;
+}
+
 // Well-formed, up to a sequence that the end of the head cuts.
 bool IsUtf8(std::string_view head) {
   for (std::size_t i = 0; i < head.size();) {
@@ -152,8 +166,8 @@ void DecodedFile::DecodeText() {
     } else {
       decoded_.erase(0, 3);
     }
-  } else if (const char* encoding = all.starts_with("\xff\xfe") && Utf16Without(all.substr(2)) != nullptr ? "UTF-16LE"
-                                    : all.starts_with("\xfe\xff") && Utf16Without(all.substr(2)) != nullptr
+  } else if (const char* encoding = all.starts_with("\xff\xfe") && IsUtf16Text(all.substr(2), true) ? "UTF-16LE"
+                                    : all.starts_with("\xfe\xff") && IsUtf16Text(all.substr(2), false)
                                         ? "UTF-16BE"
                                         : Utf16Without(all)) {
     const bool mark = all[0] == '\xff' || all[0] == '\xfe';

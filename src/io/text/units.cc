@@ -11,6 +11,8 @@
 namespace lobefit {
 namespace {
 
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
 template <class Value>
 struct Spelling {
   std::string_view word;
@@ -181,6 +183,7 @@ std::string PlainUnit(std::string_view unit) {
       {"\\", ""},
   }};
   std::string plain;
+  bool apart = false;  // a blank before
   while (!unit.empty()) {
     bool replaced = false;
     for (const auto& [sign, text] : kSigns) {
@@ -192,8 +195,12 @@ std::string PlainUnit(std::string_view unit) {
     }
     if (replaced) continue;
     const char c = unit.front();
-    if (c != ' ' && c != '\t') plain += c;
     unit.remove_prefix(1);
+    // "1e-3 1/sr" is a product, not 1e-31.
+    const bool between = IsDigit(c) && apart && !plain.empty() && IsDigit(plain.back());
+    if (between) plain += '*';
+    apart = c == ' ' || c == '\t';
+    if (!apart) plain += c;
   }
   return ToLower(plain);
 }

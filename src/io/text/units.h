@@ -32,7 +32,7 @@ struct WavelengthUnit {
 };
 
 // Lower case, without blanks; signs that only Unicode has become those of ASCII: "sr⁻¹" is "sr^-1", "µm" is "um", the
-// degree sign and the ordinal that is taken for it are "deg".
+// degree sign and the ordinal that is taken for it are "deg". Numbers with a blank between are a product, "1e-3*1/sr".
 std::string PlainUnit(std::string_view unit);
 
 // deg, rad, gon, mrad, arcmin, arcsec and their spellings. "grad" is German for deg and English for gon, so it is

@@ -82,7 +82,8 @@ class Checks {
       }
       Incidence& incidence = incidences_[found->second];
       const double value = MeanOfChannels(samples_, i), theta_o = std::acos(std::min(1.0, wo.z));
-      const int ring = std::min(kRings - 1, static_cast<int>(theta_o * kRings / (kPi / 2)));
+      // Round angles, at which instruments stop, lie off the bounds of the rings.
+      const int ring = std::min(kRings - 1, static_cast<int>((theta_o + 0.1 * kPi / 180) * kRings / (kPi / 2)));
       const double turn = (std::atan2(wo.y, wo.x) - std::atan2(wi.y, wi.x)) / (2 * kPi);
       const int sector = std::min(kSectors - 1, static_cast<int>((turn - std::floor(turn)) * kSectors));
       const auto cell = static_cast<std::size_t>(ring * kSectors + sector);
@@ -152,6 +153,16 @@ class Checks {
     }
   }
 
+  // Whether the samples of a ring leave no more than half a turn out.
+  static bool GoesRound(const Incidence& incidence, std::size_t ring) {
+    int gap = 0, widest = 0;
+    for (int k = 0; k < 2 * kSectors; ++k) {
+      gap = incidence.count[ring * kSectors + static_cast<std::size_t>(k % kSectors)] > 0 ? 0 : gap + 1;
+      widest = std::max(widest, gap);
+    }
+    return widest <= kSectors / 2;
+  }
+
   // Directional albedo from the means over rings; nothing where the samples do not cover the hemisphere.
   static double Albedo(const Incidence& incidence) {
     double albedo = 0, covered = 0;
@@ -165,7 +176,8 @@ class Checks {
         sum += incidence.sum[k] / static_cast<double>(incidence.count[k]);
         ++cells;
       }
-      if (cells == 0) continue;
+      // Where only the neighbourhood of a peak was looked at, its mean is not the ring's.
+      if (cells == 0 || !GoesRound(incidence, r)) continue;
       covered += projected;
       albedo += projected * sum / cells;
     }

@@ -17,6 +17,9 @@ TEST(CsvKeys, AnySpellingAndPlace) {
     EXPECT_NEAR(std::acos(m.samples.wi_z[0]), 0.5, 1e-12) << key;
     EXPECT_EQ(m.conventions.at("angle-unit"), "rad (header)") << key;
   }
+  for (const char* mark : {"* ", "! "}) {
+    EXPECT_EQ(ReadText(std::string(mark) + "angle-unit: rad\n" + kRows).conventions.at("angle-unit"), "rad (header)");
+  }
   const Measurement after = ReadText("theta_i,phi_i,theta_o,phi_o,brdf\n# angle_unit: rad\n0.5,0,0.7,3,1\n");
   EXPECT_NEAR(std::acos(after.samples.wi_z[0]), 0.5, 1e-12);
   EXPECT_EQ(ReadText("# value_kind: f-cos-o\n" + kRows).conventions.at("value-kind"), "f-cos-o (header)");
@@ -35,8 +38,28 @@ TEST(CsvKeys, MayStandBelowThousandsOfComments) {
   EXPECT_NEAR(measurement.samples.wi_z[0], std::cos(0.5), 1e-12);
 }
 
+TEST(CsvKeys, AFactorAndAUnitAreAProduct) {
+  for (const char* unit : {"1e-3 1/sr", "10^-3 1/sr", "1e-3/sr", "10^-3 sr^-1"}) {
+    const Measurement m =
+        ReadText("theta_i,phi_i,theta_o,phi_o,BRDF (" + std::string(unit) + ")\n10,0,20,180,500\n10,0,30,180,250\n");
+    EXPECT_NEAR(m.samples.values[0][0], 0.5, 1e-15) << unit;
+  }
+}
+
+TEST(CsvKeys, HeadingsAreNoKeys) {
+  const Measurement m =
+      ReadText(",Incident,,Reflected,,\nNo.,polar,azimuth,polar,azimuth,BRDF\n1,10,20,30,40,0.5\n2,50,60,70,80,0.25\n");
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 1, 50, 60, 70, 80, 0.25);
+}
+
 TEST(CsvKeys, WhatResemblesAKeyIsSaid) {
   EXPECT_NE(MessageOf("# angle-unti: rad\n" + kRows).find("did you mean 'angle-unit'?"), std::string::npos);
+  for (const char* prose : {"Repeats: 3", "Excluded: none", "X_Columns: No", "Column: 5"}) {
+    const Measurement m = ReadText(std::string(prose) + "\n" + kRows);
+    EXPECT_EQ(m.samples.size(), 1U) << prose;
+    EXPECT_TRUE(HasRemark(m, "is not known (did you mean")) << prose;
+  }
   EXPECT_TRUE(HasRemark(ReadText("# unit for all of the angles: rad\n" + kRows), "is not known and was not used"));
   EXPECT_TRUE(HasRemark(ReadText("# light convention: away\n" + kRows), "is not known and was not used"));
   EXPECT_TRUE(ReadText("# made by: N.N.\n# lobefit.alpha_x: 0.1\n# https://example.org/a-b\n" + kRows).remarks.empty());

@@ -211,6 +211,20 @@ TEST(CsvLayouts, PolarisationOfTheLightAndOfTheViewer) {
   EXPECT_EQ(ReadText("wavelength (nm),theta_i,theta_o,pol,brdf\n550,10,20,u,1\n650,10,20,u,2\n").channels.size(), 2U);
 }
 
+TEST(CsvLayouts, ReadingsOfADetectorAreAsked) {
+  const std::string text = "theta_i,theta_o,dphi,counts\n10,20,180,500\n10,30,180,250\n";
+  EXPECT_NE(MessageOf(text).find("choose them with --value-column \"counts\", and fit with --scale free"),
+            std::string::npos);
+  ReadOptions options;
+  options.value_column = "counts";
+  EXPECT_TRUE(HasRemark(ReadText(text, options), "have no unit that is known"));
+}
+
+TEST(CsvLayouts, SamplesInOneFileAreToldApart) {
+  const Measurement m = ReadText("sample,theta_i,theta_o,brdf\nA,10,20,1\nB,10,20,2\nA,10,30,1\nB,10,30,2\n");
+  EXPECT_TRUE(HasRemark(m, "rows of the same directions differ in 'sample' (A, B)"));
+}
+
 TEST(CsvLayouts, PolarisationsInColumns) {
   for (const char* names : {"BRDF_s,BRDF_p", "f_s,f_p", "f_TE,f_TM", "BRDF_s (1/sr),BRDF_p (1/sr)"}) {
     const Measurement m = ReadText("theta_i,theta_o,dphi," + std::string(names) + "\n10,20,0,1,2\n10,30,0,3,-\n");
@@ -230,6 +244,19 @@ TEST(CsvLayouts, PolarisationsInColumns) {
   EXPECT_EQ(ReadText("theta_i,theta_o,dphi,f_s\n10,20,0,1\n").samples.size(), 1U);
   EXPECT_NE(MessageOf("theta_i,theta_o,dphi,pol,f_s,f_p\n10,20,0,x,1,2\n").find("stand in a column and in the names"),
             std::string::npos);
+}
+
+TEST(CsvLayouts, SignedAnglesInTheNamesOfATable) {
+  for (const char* names : {"theta_i,theta_o=-40,theta_o=40,theta_o=-0", "theta_i,theta_o -40,theta_o 40,theta_o 0",
+                            "theta_i,theta_o @ -40 deg,theta_o @ 40 deg,theta_o @ 0 deg",
+                            "theta_i,theta_o=\xe2\x88\x92"
+                            "40,theta_o=40,theta_o=0"}) {
+    SCOPED_TRACE(names);
+    const Measurement m = ReadText(std::string(names) + "\n10,1,2,3\n");
+    ASSERT_EQ(m.samples.size(), 3U);
+    ExpectSample(m, 0, 10, 0, 40, 0, 1);
+    ExpectSample(m, 1, 10, 0, 40, 180, 2);
+  }
 }
 
 TEST(CsvLayouts, AnAngleAboveOrInTheNamesOfATable) {

@@ -48,6 +48,26 @@ TEST(Plausibility, NothingIsSaidOfAnOrdinarySurface) {
               })).empty());
 }
 
+// Angles that rounding has moved off the bounds of the rings by which the albedo is estimated.
+TEST(Plausibility, DenseSamplesAboutThePeakAreNotTheWholeRing) {
+  MeasurementBuilder builder({{"Y"}, {}});
+  std::uint32_t line = 0;
+  for (const double theta_i : {30.0, 50.0, 70.0}) {
+    const Vec3 wi = FromSpherical(DegreesToRadians(theta_i), 0);
+    const auto add = [&](double theta_o, double phi) {
+      const double rounding = 1e-7 * (line % 3 == 0 ? -1 : 1);
+      const Vec3 wo = FromSpherical(DegreesToRadians(theta_o + rounding), DegreesToRadians(phi));
+      const double value = 10 * Lobe(wi, wo) * 0.02;
+      builder.Add(wi, wo, &value, ++line);
+    };
+    for (double theta_o = 0; theta_o <= 80; theta_o += 20) {
+      for (double phi = 0; phi < 360; phi += theta_o == 0 ? 360 : 20) add(theta_o, phi);
+    }
+    for (const double offset : {-5.0, -2.5, 2.5, 5.0}) add(theta_i + offset, 180);
+  }
+  for (const std::string& remark : FindImplausible(builder.Finish())) ADD_FAILURE() << remark;
+}
+
 TEST(Plausibility, ALobeAboutTheLightsOwnDirection) {
   const auto turned = [](const Vec3& wi, const Vec3& wo) { return Lobe({-wi.x, -wi.y, wi.z}, wo); };
   EXPECT_TRUE(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "lobefit/base/text/csv_fields.h"
@@ -9,6 +10,7 @@
 #include "lobefit/io/csv/head/head_lines.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/no_value.h"
+#include "lobefit/io/csv/head/side_tables.h"
 #include "lobefit/io/text/place.h"
 
 namespace lobefit {
@@ -51,6 +53,9 @@ class HeaderReader {
     if (mapping_.head()) header_.head_coordinate = mapping_.head();
     TakeUnits();
     TakeRows();
+    header_.written_columns = header_.columns.size();
+    header_.cells = TakeCells(file_, header_.names_line, header_.first_rows, header_.decimal_mark, &header_.columns);
+    if (may_be_side_tables_) TakeSideTables();
     return std::move(header_);
   }
 
@@ -87,23 +92,64 @@ class HeaderReader {
     }
   }
 
+  // Cells with units are numbers only where most lines that follow have such: so the names of a table may look.
+  bool FindData(char separator, bool units) {
+    std::size_t rows = 0, others = 0, first = 0;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (lines_[i].comment) continue;
+      Fields fields = SplitFields(lines_[i].text, separator);
+      std::vector<std::string> texts(units ? fields.size() : 0);  // of quotes within quotes
+      for (std::size_t k = 0; k < texts.size(); ++k) {
+        const std::string_view field = Unquoted(fields[k], &texts[k]);
+        if (ParseCell(field, '.') || ParseCell(field, ',')) fields[k] = NumberOfCell(field);
+      }
+      const bool is_row =
+          fields.size() >= 2 && IsData(fields) && !(separator == ',' && HasCommasWithinNumbers(lines_[i].text, fields));
+      if (is_row && rows++ == 0) first = i;
+      if (is_row && !units) break;
+      others += !is_row && rows > 0 ? 1 : 0;
+    }
+    if (rows == 0 || others >= rows) return false;
+    header_.separator = separator;
+    data_ = first;
+    TakeRowsBefore();
+    FindDecimalMark();
+    return true;
+  }
+
+  // Above the first row of bare numbers others may stand whose cells have units or marks in place of values.
+  void TakeRowsBefore() {
+    const std::size_t fields = SplitFields(lines_[data_].text, header_.separator).size();
+    for (std::size_t i = data_; i-- > 0;) {
+      if (lines_[i].comment) continue;
+      const Fields row = SplitFields(lines_[i].text, header_.separator);
+      std::size_t numbers = 0;
+      std::string storage;
+      const bool is_row = row.size() == fields && std::all_of(row.begin(), row.end(), [&](std::string_view raw) {
+                            const std::string_view field = Unquoted(raw, &storage);
+                            const bool number = IsNumeric(field) || ParseCell(field, '.') || ParseCell(field, ',');
+                            numbers += number ? 1 : 0;
+                            return number || IsNoValueWord(field);
+                          });
+      const bool led = is_row && IsNumeric(NumberOfCell(Unquoted(row[0], &storage)));
+      if (!led || numbers < 2) return;
+      data_ = i;
+    }
+  }
+
   // The first row of data, and the separator by which it is one.
   void FindData() {
-    std::vector<char> candidates = {';', '\t', '|', ',', kBlankSeparator};
+    std::vector<char> candidates = {';', '\t', '|', ','};
     // A line that Excel writes may name a separator that the file, saved again, does not have.
     if (stated_separator_) candidates.insert(candidates.begin(), *stated_separator_);
     for (const char candidate : candidates) {
-      for (std::size_t i = 0; i < lines_.size(); ++i) {
-        if (lines_[i].comment) continue;
-        const Fields fields = SplitFields(lines_[i].text, candidate);
-        if (fields.size() < 2 || !IsData(fields)) continue;
-        if (candidate == ',' && HasCommasWithinNumbers(lines_[i].text, fields)) continue;
-        header_.separator = candidate;
-        data_ = i;
-        FindDecimalMark();
-        return;
-      }
+      if (FindData(candidate, false)) return;
     }
+    // "10 deg;20 deg;0.5" is no row of numbers between blanks.
+    for (const char candidate : candidates) {
+      if (FindData(candidate, true)) return;
+    }
+    if (FindData(kBlankSeparator, false)) return;
     data_ = lines_.size();
     const Line& first = *std::find_if(lines_.begin(), lines_.end(), [](const Line& line) { return !line.comment; });
     for (const char candidate : {';', '\t', '|', ','}) {
@@ -120,7 +166,7 @@ class HeaderReader {
     for (std::size_t i = data_; i < lines_.size(); ++i) {
       if (lines_[i].comment) continue;
       for (const std::string_view raw : SplitFields(lines_[i].text, header_.separator)) {
-        const std::string_view field = Unquoted(raw, &storage);
+        const std::string_view field = NumberOfCell(Unquoted(raw, &storage));
         if (HasThousandsSeparator(field)) {
           FailAtLine(file_, lines_[i].number,
                      "'" + Excerpt(field) +
@@ -192,19 +238,24 @@ class HeaderReader {
   bool FindNames() {
     row_fields_ = data_ < lines_.size() ? SplitFields(lines_[data_].text, header_.separator).size() : 0;
     const std::size_t fields = row_fields_;
+    std::optional<std::size_t> twins;
     for (const bool comments : {false, true}) {
       for (std::size_t i = data_; i-- > 0;) {
         if (lines_[i].comment != comments || !TryNames(i)) continue;
-        if (comments && header_.columns.size() != fields && fields > 0) {
-          FailAtLine(file_, lines_[data_].number,
-                     "has " + std::to_string(fields) + " fields, but line " + std::to_string(header_.names_line) +
-                         " names " + std::to_string(header_.columns.size()) + " columns");
+        if (HasTwins(header_.columns)) {
+          if (!twins) twins = i;
+          continue;
         }
-        NameRowNumbers(fields);
-        TakeHeadAbove(i);
-        return true;
+        // Remarks on columns ("incidence;incidence;scatter;scatter") may stand below their names, but titles above.
+        if (twins && (header_.columns.size() != fields || CountDirections(header_.columns) < 2)) continue;
+        return TakeNames(i);
       }
     }
+    if (twins && TryNames(*twins)) {
+      may_be_side_tables_ = true;
+      return TakeNames(*twins);
+    }
+    if (FindNamesBelow()) return TakeNames(names_);
     // A line of numbers under an empty corner, and the rows below it.
     if (data_ + 1 < lines_.size()) {
       const Fields names = SplitFields(lines_[data_].text, header_.separator);
@@ -228,6 +279,61 @@ class HeaderReader {
       return SetNames(i, std::move(columns));
     }
     return false;
+  }
+
+  bool TakeNames(std::size_t at) {
+    if (lines_[at].comment && header_.columns.size() != row_fields_ && row_fields_ > 0) {
+      FailAtLine(file_, lines_[data_].number,
+                 "has " + std::to_string(row_fields_) + " fields, but line " + std::to_string(header_.names_line) +
+                     " names " + std::to_string(header_.columns.size()) + " columns");
+    }
+    NameRowNumbers(row_fields_);
+    TakeHeadAbove(at);
+    return true;
+  }
+
+  static bool HasTwins(const std::vector<CsvColumn>& columns) {
+    std::set<std::pair<Coordinate, bool>> known;
+    return std::any_of(columns.begin(), columns.end(), [&](const CsvColumn& column) {
+      return column.role == ColumnRole::kCoordinate && !known.emplace(column.coordinate, column.letter_s).second;
+    });
+  }
+
+  static std::ptrdiff_t CountDirections(const std::vector<CsvColumn>& columns) {
+    return std::count_if(columns.begin(), columns.end(),
+                         [](const CsvColumn& column) { return column.role == ColumnRole::kCoordinate; });
+  }
+
+  // "Samples 861 861 861" of an instrument's head is no row, where names and rows stand below it.
+  bool FindNamesBelow() {
+    for (std::size_t i = data_; i + 1 < lines_.size(); ++i) {
+      if (lines_[i].comment) continue;
+      const Fields fields = SplitFields(lines_[i].text, header_.separator);
+      if (IsData(fields)) {
+        if (IsNumeric(fields[0])) return false;
+        continue;
+      }
+      if (!TryNames(i) || CountDirections(header_.columns) < 2) continue;
+      for (std::size_t k = i + 1; k < lines_.size(); ++k) {
+        const Fields row = SplitFields(lines_[k].text, header_.separator);
+        if (lines_[k].comment || !IsData(row)) continue;
+        data_ = k;
+        row_fields_ = row.size();
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // The same names again and again are tables side by side, whose headings may say an angle each.
+  void TakeSideTables() {
+    const bool headed = names_ > 0 && !lines_[names_ - 1].comment;
+    const Fields headings = headed ? SplitFields(lines_[names_ - 1].text, header_.separator) : Fields();
+    header_.side_tables = FindSideTables(headings, header_.written_columns, &header_.columns);
+    if (header_.side_tables.empty()) return;
+    const std::optional<FixedCoordinate>& fixed = header_.side_tables[0].fixed;
+    if (fixed) header_.keys.Fix(*fixed);
+    header_.remarks.push_back(std::to_string(header_.side_tables.size()) + " tables stand side by side");
   }
 
   // Rows without any names, where the mapping says what the columns are by their numbers.
@@ -310,8 +416,11 @@ class HeaderReader {
   // A row of units; one that holds a unit which is not known is not passed over, see CsvColumn::problem. Above the
   // names titles stand, so there it must speak of angles.
   void TakeUnitsOf(std::size_t line, bool above) {
-    if (lines_[line].comment) return;
-    const Fields units = SplitFields(lines_[line].text, header_.separator);
+    // Below names in a comment the units stand in one too.
+    if (lines_[line].comment && (above || !lines_[names_].comment)) return;
+    const std::string_view text = lines_[line].comment ? CommentText(lines_[line].text) : lines_[line].text;
+    const Fields units = SplitFields(text, header_.separator);
+    if (lines_[line].comment && units.size() != header_.columns.size()) return;
     if (units.size() > header_.columns.size() + 1) return;
     std::string storage;
     std::size_t known = 0, angles = 0, others = 0;
@@ -354,6 +463,7 @@ class HeaderReader {
   std::vector<Line> lines_;
   std::optional<char> stated_separator_;
   std::size_t data_ = 0, names_ = static_cast<std::size_t>(-1), last_line_ = 1;
+  bool may_be_side_tables_ = false;
   std::size_t row_fields_ = 0;  // of the first row
 };
 

@@ -7,8 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "lobefit/io/csv/head/cells.h"
 #include "lobefit/io/csv/head/keys.h"
 #include "lobefit/io/csv/head/lines.h"
+#include "lobefit/io/csv/head/side_tables.h"
 #include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/text/format.h"
 
@@ -19,6 +21,9 @@ inline constexpr std::size_t kCsvHeadBytes = std::size_t{1} << 20;
 
 struct CsvHeader {
   std::vector<CsvColumn> columns;
+  std::vector<CellForm> cells;         // one a written column, or none where all cells are bare numbers
+  std::size_t written_columns = 0;     // those behind them stand for uncertainties within cells
+  std::vector<SideTable> side_tables;  // where the same table stands several times beside itself, else none
   char separator = ',';
   char decimal_mark = '.';
   std::size_t names_line = 0;  // line of the column names

@@ -102,10 +102,17 @@ bool Is(const std::string& name, std::initializer_list<std::string_view> spellin
   return std::find(spellings.begin(), spellings.end(), name) != spellings.end();
 }
 
-const std::vector<std::string>& KnownKeys() {
-  static const std::vector<std::string> keys = {
-      "angle-unit",      "value-kind", "value-scale", "incident-sense", "wavelength-unit", "sample-rotation-deg",
-      "sample-rotation", "no-value",   "exclude",     "columns",        "value-column",    "repeated"};
+// Those that change what numbers mean.
+const std::vector<std::string>& KnownUnitKeys() {
+  static const std::vector<std::string> keys = {"angle-unit",     "value-kind",      "value-scale",
+                                                "incident-sense", "wavelength-unit", "sample-rotation-deg",
+                                                "sample-rotation"};
+  return keys;
+}
+
+// And those that choose among columns and rows: prose has such words too ("Repeats: 3", "X_Columns").
+const std::vector<std::string>& KnownChoiceKeys() {
+  static const std::vector<std::string> keys = {"no-value", "exclude", "columns", "value-column", "repeated"};
   return keys;
 }
 
@@ -129,11 +136,14 @@ void RemarkOnUnused(std::size_t line, std::string_view key, const std::string& n
   const auto has = [&](std::string_view part) { return name.find(part) != std::string::npos; };
   const bool resembles = has("unit") || has("sense") || has("convention") || has("cosine") || has("scale") ||
                          has("factor") || ParseAngleUnit(word) || ParseIncidentSense(word) || ParseValueKind(word);
+  const std::string start = "line " + std::to_string(line) + ": the key '" + Excerpt(key) + "' is not known";
   if (resembles) {
-    keys->remarks.push_back("line " + std::to_string(line) + ": the key '" + Excerpt(key) +
-                            "' is not known and was not used; known are " + Join(KnownKeys()) +
-                            ", theta_i and the other angles, wavelength");
+    keys->remarks.push_back(start + " and was not used; known are " + Join(KnownUnitKeys()) + ", " +
+                            Join(KnownChoiceKeys()) + ", theta_i and the other angles, wavelength");
+    return;
   }
+  const std::string suggestion = name.size() > 5 ? DidYouMean(name, KnownChoiceKeys()) : "";
+  if (!suggestion.empty()) keys->remarks.push_back(start + suggestion + " and was not used");
 }
 
 }  // namespace
@@ -244,7 +254,7 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
     keys->repeated = std::string(word);
   } else if (!ReadUnits(name, word, keys) && !ReadCoordinate(key, word, keys)) {
     // A misspelt key would leave the file read in the wrong unit without a word.
-    const std::string suggestion = name.size() > 5 ? DidYouMean(name, KnownKeys()) : "";
+    const std::string suggestion = name.size() > 5 ? DidYouMean(name, KnownUnitKeys()) : "";
     if (!suggestion.empty()) FailAtLine(file, line, "the key '" + Excerpt(key) + "' is not known" + suggestion);
     RemarkOnUnused(line, key, name, word, keys);
     return false;
@@ -258,6 +268,13 @@ bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::str
     if (!Trim(field).empty()) filled.push_back(Trim(field));
   }
   if (filled.empty() || filled.size() > 3) return false;
+  // "Incident,,Reflected" are headings of columns.
+  const auto is_empty = [](std::string_view field) { return Trim(field).empty(); };
+  const auto first = std::find_if_not(fields.begin(), fields.end(), is_empty);
+  if (filled.size() > 1 && is_empty(*(first + 1)) && std::none_of(filled.begin(), filled.end(), [](std::string_view f) {
+        return f.find_first_of("0123456789:=") != std::string_view::npos;
+      }))
+    return false;
   std::string text(filled[0]);
   // "AOI = 30" between blanks has its mark in a field of its own.
   const bool marked = filled[0].find_first_of(":=") != std::string_view::npos ||

@@ -21,7 +21,8 @@ std::string_view QuotedComment(std::string_view line) {
 
 bool IsComment(std::string_view line) {
   line = Trim(line);
-  return line.starts_with('#') || line.starts_with('%') || line.starts_with("//") || !QuotedComment(line).empty();
+  return line.starts_with('#') || line.starts_with('%') || line.starts_with("//") || line.starts_with("! ") ||
+         line.starts_with("* ") || !QuotedComment(line).empty();
 }
 
 std::string_view CommentText(std::string_view line) {
@@ -78,6 +79,9 @@ std::optional<double> ParseCsvNumber(std::string_view field, char decimal_mark) 
     text.replace(minus, kMinus.size(), "-");
     return ParseCsvNumber(text, decimal_mark);
   }
+  constexpr std::string_view kNoBreak = "\xc2\xa0";
+  while (field.starts_with(kNoBreak)) field = Trim(field.substr(kNoBreak.size()));
+  while (field.ends_with(kNoBreak)) field = Trim(field.substr(0, field.size() - kNoBreak.size()));
   if (field.ends_with("\xc2\xb0")) field = Trim(field.substr(0, field.size() - 2));
   // Fortran writes the exponents of its double precision with a D.
   const std::size_t exponent = field.find_first_of("dD", 1);

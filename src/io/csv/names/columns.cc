@@ -190,8 +190,10 @@ void ParseUnit(CsvColumn* column) {
       if (cosine || sine) break;
       column->angle_unit = ParseAngleUnit(unit);
       if (!column->angle_unit)
-        refuse(unit == "grad" ? "deg, rad, gon, mrad (grad is read as deg by some and as gon by others)"
-                              : "deg, rad, gon, mrad, arcmin, arcsec");
+        refuse(
+            unit == "grad"
+                ? "deg, rad, gon, mrad (grad is read as deg by some and as gon by others: say which with --angle-unit)"
+                : "deg, rad, gon, mrad, arcmin, arcsec");
       break;
     }
     case ColumnRole::kWavelength:
@@ -309,7 +311,11 @@ CsvColumn ClassifyColumn(std::string_view name) {
     return true;
   };
   const bool plain = split.function.empty() || split.function == "abs";
-  if (plain && synonym != kSynonyms.end()) {
+  // "theta_o=0" is no "theta_o - theta_0".
+  const bool equals = name.find('=') != std::string_view::npos;
+  if (plain && equals &&
+      attempt([&](CsvColumn* c) { return ClassifyFixed(split.words, c) && c->role == ColumnRole::kFixed; })) {
+  } else if (plain && synonym != kSynonyms.end()) {
     column.role = synonym->role;
     column.coordinate = synonym->coordinate;
     column.magnitude = split.magnitude;

@@ -252,7 +252,9 @@ NameWords SplitName(std::string_view name) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const bool decimal_point = c == '.' && i > 0 && i + 1 < text.size() && IsDigit(text[i - 1]) && IsDigit(text[i + 1]);
-    const bool sign = c == '-' && (word.empty() && i + 1 < text.size() && IsDigit(text[i + 1]) && i == 0);
+    // "theta_o=-80", but not the hyphen of "theta-1" or "450-650".
+    const bool sign = c == '-' && word.empty() && i + 1 < text.size() && IsDigit(text[i + 1]) &&
+                      (i == 0 || (!IsLetter(text[i - 1]) && !IsDigit(text[i - 1])));
     const bool percent = c == '%';
     const bool kept =
         IsLetter(c) || IsDigit(c) || decimal_point || sign || percent || static_cast<unsigned char>(c) >= 0x80;

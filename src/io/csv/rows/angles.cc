@@ -94,6 +94,18 @@ class AngleFinder {
     return RadiansPerUnit(own && !options_.angle_unit ? *own : default_unit_);
   }
 
+  // Names that were taken for Western European text and are not understood: half of their letters have accents.
+  bool HasGarbledName() const {
+    return std::any_of(columns_.begin(), columns_.end(), [](const CsvColumn& column) {
+      std::size_t accents = 0;
+      for (const char c : column.name) {
+        const auto byte = static_cast<unsigned char>(c);
+        accents += byte == 0xc2 || byte == 0xc3 ? 1 : 0;
+      }
+      return column.role == ColumnRole::kUnknown && accents > 2 && 3 * accents > column.name.size();
+    });
+  }
+
   // "theta_s" is the sun where theta_v or theta_r stands beside it and no other name is the light's.
   void ResolveLetters() {
     for (const auto& [viewer, light] : {std::pair{C::kThetaO, C::kThetaI}, std::pair{C::kPhiO, C::kPhiI}}) {
@@ -250,7 +262,8 @@ class AngleFinder {
       for (const auto& [coordinate, other] : layout_.coordinates) {
         if (coordinate == column.coordinate)
           Fail("the columns " + QuotedName(columns_[other]) + " and " + QuotedName(column) +
-               " mean the same; remove one of them");
+               " mean the same; remove one of them, or put tables that stand side by side under headings as in 'AOI "
+               "10', or into files of their own");
       }
       directions.Give(column.coordinate, Scale(column), column.form);
       if (column.coordinate == C::kFromSpecular || column.coordinate == C::kBetaOffset)
@@ -292,6 +305,7 @@ class AngleFinder {
            (missing.find("(theta_") == std::string::npos
                 ? ""
                 : "; an angle that all rows share is stated by a line '# theta_i: 30', or by FILE:theta_i=30") +
+           (HasGarbledName() ? "; if the letters of the names look wrong, save the file as UTF-8" : "") +
            "; allowed: " + AllowedColumns());
     }
     const auto alpha = std::find_if(columns_.begin(), columns_.end(), [](const CsvColumn& column) {

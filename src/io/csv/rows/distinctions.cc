@@ -23,7 +23,7 @@ std::string DescribeDistinctions(const InputFile& file, const CsvHeader& header,
   for (std::size_t rows = 0; rows < kRows && lines.Next(&line);) {
     if (lines.line_number() < header.first_data_line || Trim(line).empty() || IsComment(line)) continue;
     SplitCsvLine(line, header.separator, &fields);
-    if (fields.size() < header.columns.size()) continue;
+    if (fields.size() < header.written_columns) continue;
     ++rows;
     key.clear();
     for (const auto& [coordinate, column] : layout.coordinates) {

@@ -1,6 +1,7 @@
 #include "lobefit/io/csv/rows/layout.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -13,6 +14,7 @@
 #include "lobefit/io/csv/names/name_rules.h"
 #include "lobefit/io/csv/names/polarised_columns.h"
 #include "lobefit/io/csv/rows/angles.h"
+#include "lobefit/io/csv/rows/uncertainties.h"
 #include "lobefit/io/csv/rows/value_unit.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
@@ -26,6 +28,22 @@ std::string NamesOf(const std::vector<CsvColumn>& columns) {
   return Excerpt(Join(names), 200);
 }
 
+// "counts", "Signal (V)": what a detector says, in units of its own.
+bool IsReading(const CsvColumn& column) {
+  static constexpr std::array<std::string_view, 8> kReadings = {"counts", "signal",   "voltage",   "current",
+                                                                "power",  "radiance", "intensity", "raw"};
+  if (column.role != ColumnRole::kIgnored) return false;
+  const NameList words = SplitName(column.name).words;
+  return !words.empty() && std::find(kReadings.begin(), kReadings.end(), words[0]) != kReadings.end();
+}
+
+// "sample", "scan": what can tell rows of the same directions apart, though no number needs it.
+bool TellsRowsApart(const CsvColumn& column) {
+  static constexpr std::array<std::string_view, 6> kParts = {"sample", "material", "scan", "file", "filename", "user"};
+  return column.role == ColumnRole::kIgnored &&
+         std::find(kParts.begin(), kParts.end(), ToLower(column.name)) != kParts.end();
+}
+
 // Turns the header into a layout, or says what is missing, unknown or ambiguous.
 class LayoutBuilder {
  public:
@@ -35,6 +53,7 @@ class LayoutBuilder {
   CsvLayout Build() {
     FindFilters();
     ResolveLetters();
+    ResolveZeros();
     ResolveHead();
     FindAngles(file_, header_, options_, &columns_, &layout_, measurement_);
     layout_.wavelength = FindOnly(ColumnRole::kWavelength);
@@ -46,7 +65,9 @@ class LayoutBuilder {
       ChooseChannels();
     }
     FindWavelength();
-    FindUncertainties();
+    layout_.weight = FindOnly(ColumnRole::kWeight);
+    FindUncertainties(file_, header_, columns_, &layout_, measurement_);
+    SpreadSideTables(file_, header_, &layout_);
     CheckColumns();
     FindValueUnit(file_, header_, options_, columns_, &layout_, measurement_);
     MarkNumbers();
@@ -127,6 +148,19 @@ class LayoutBuilder {
     }
   }
 
+  // "theta_o 0" is "theta_o - theta_0", but beside "theta_o 10" a column of its own angle.
+  void ResolveZeros() {
+    for (CsvColumn& column : columns_) {
+      if (column.role != ColumnRole::kCoordinate) continue;
+      CsvColumn fixed = column;
+      if (!ClassifyFixed(SplitName(column.name).words, &fixed) || fixed.role != ColumnRole::kFixed) continue;
+      const bool sibling = std::any_of(columns_.begin(), columns_.end(), [&](const CsvColumn& other) {
+        return other.role == ColumnRole::kFixed && other.coordinate == fixed.coordinate;
+      });
+      if (sibling) column = fixed;
+    }
+  }
+
   // Names that are numbers, where the head says what they are.
   void ResolveHead() {
     std::vector<std::string> numbers;
@@ -154,7 +188,8 @@ class LayoutBuilder {
     if (at == columns_.size())
       Fail("no column is named '" + Excerpt(name) + "', which --value-column asks for; the columns are " +
            NamesOf(columns_));
-    const CsvColumn& column = columns_[at];
+    CsvColumn& column = columns_[at];
+    if (IsReading(column) && !column.value_scale) column.value_scale = ValueScale{ValueScale::Form::kLinear, 1, true};
     layout_.groups = {{{}, {at}}};
     layout_.channels.names = {column.role == ColumnRole::kChannel ? column.channel : "Y"};
     if (column.wavelength_nm > 0) layout_.channels.wavelengths_nm = {column.wavelength_nm};
@@ -253,6 +288,13 @@ class LayoutBuilder {
              " can be f_r, pi f_r, f_r times a cosine or something else; say it with --value-column \"" +
              Excerpt(columns_[other].name) + "\" and --value-kind f|pi-f|f-cos-o|f-cos-i");
       }
+      const auto reading = std::find_if(columns_.begin(), columns_.end(), IsReading);
+      if (reading != columns_.end()) {
+        Fail("no column holds f_r; " + QuotedName(*reading) +
+             " can be readings of an unknown scale: choose them with "
+             "--value-column \"" +
+             Excerpt(reading->name) + "\", and fit with --scale free");
+      }
       Fail("no column holds values; allowed: " + AllowedColumns() + "; or choose one with --value-column");
     }
     layout_.groups = {{{}, candidates[0]}};
@@ -296,68 +338,11 @@ class LayoutBuilder {
     measurement_->conventions["wavelength-unit"] = std::string(layout_.wavelength_unit.name) + origin;
   }
 
-  // In a table with a column for each angle the uncertainties stand behind their values, all of one name or none. True
-  // where there are such.
-  bool PairUncertainties() {
-    if (layout_.groups.size() < 2 || std::none_of(columns_.begin(), columns_.end(), [](const CsvColumn& column) {
-          return column.role == ColumnRole::kSigma;
-        }))
-      return false;
-    std::size_t paired = 0;
-    for (ValueGroup& group : layout_.groups) {
-      const std::size_t next = group.values.back() + 1;
-      if (group.values.size() != 1 || next >= columns_.size() || columns_[next].role != ColumnRole::kSigma) continue;
-      const CsvColumn& sigma = columns_[next];
-      if (sigma.fixed != 0 && sigma.fixed != columns_[next - 1].fixed)
-        Fail("the column " + QuotedName(sigma) + " stands behind " + QuotedName(columns_[next - 1]) +
-             " and speaks of another angle; put each uncertainty behind its value");
-      group.sigma = next;
-      ++paired;
-    }
-    if (paired == 0) return false;
-    if (paired < layout_.groups.size())
-      Fail("only " + std::to_string(paired) + " of " + std::to_string(layout_.groups.size()) +
-           " columns of values have an uncertainty behind them; give all or none");
-    measurement_->remarks.push_back("the uncertainty of each column of values is the column behind it");
-    return true;
-  }
-
-  void FindUncertainties() {
-    layout_.weight = FindOnly(ColumnRole::kWeight);
-    if (PairUncertainties()) {
-      if (layout_.weight != kNoColumn) Fail("both weight and sigma columns are given; remove one of them");
-      return;
-    }
-    std::map<std::string, std::size_t> by_channel;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      const CsvColumn& column = columns_[i];
-      if (column.role != ColumnRole::kSigma) continue;
-      const auto [known, is_new] = by_channel.emplace(column.channel, i);
-      if (is_new || !column.problem.empty()) continue;
-      if (!columns_[known->second].problem.empty()) {
-        known->second = i;  // the standard uncertainty, beside an expanded one of unknown factor
-      } else {
-        Fail("two columns are named " + QuotedName(column) + "; remove one of them");
-      }
-    }
-    if (by_channel.empty() || layout_.groups.size() > 1) return;
-    if (layout_.weight != kNoColumn) Fail("both weight and sigma columns are given; remove one of them");
-    if (by_channel.contains("")) {
-      layout_.sigma = by_channel[""];
-      return;
-    }
-    for (const std::string& channel : layout_.channels.names) {
-      if (!by_channel.contains(channel)) {
-        Fail("channel " + channel + " has no column sigma_" + channel +
-             ", but other channels have one; give all or none");
-      }
-      layout_.channel_sigmas.push_back(by_channel[channel]);
-    }
-  }
-
   bool IsUsed(std::size_t i) const {
     const auto is_value = [&](const ValueGroup& group) {
-      return i == group.sigma || std::find(group.values.begin(), group.values.end(), i) != group.values.end();
+      return i == group.sigma || std::find(group.values.begin(), group.values.end(), i) != group.values.end() ||
+             std::any_of(group.coordinates.begin(), group.coordinates.end(),
+                         [&](const auto& entry) { return entry.second == i; });
     };
     return std::any_of(layout_.groups.begin(), layout_.groups.end(), is_value) || i == layout_.sigma ||
            i == layout_.weight || i == layout_.wavelength || IsPolarisation(i) ||
@@ -379,7 +364,7 @@ class LayoutBuilder {
         }
         continue;
       }
-      if (column.name.empty()) continue;
+      if (column.name.empty() || i >= header_.written_columns) continue;
       if (LooksLikeAngle(column) && !options_.value_column) {
         Fail("column " + std::to_string(i + 1) + " is named " + QuotedName(column) +
              ", which speaks of an angle but is not known; allowed: " + AllowedColumns() +
@@ -392,7 +377,7 @@ class LayoutBuilder {
         continue;
       }
       ignored.push_back(Excerpt(column.name));
-      if (column.role == ColumnRole::kUnknown) layout_.unused.push_back(i);
+      if (column.role == ColumnRole::kUnknown || TellsRowsApart(column)) layout_.unused.push_back(i);
     }
     if (ignored.size() > 8) {
       const std::string more = " and " + std::to_string(ignored.size() - 8) + " more";

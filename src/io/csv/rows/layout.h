@@ -21,6 +21,7 @@ struct ValueGroup {
   std::vector<std::size_t> values;
   std::string polarisation = {};  // empty: a column of the row says it, or nothing does
   std::size_t sigma = kNoColumn;  // of a table with one behind each column of values
+  std::vector<std::pair<Coordinate, std::size_t>> coordinates = {};  // of one of several tables side by side
 };
 
 // A column of which only rows with this text are used.
@@ -40,7 +41,7 @@ struct CsvLayout {
   bool by_wavelength = false;  // each row has a wavelength, its own or one stated in the head
   std::vector<ValueGroup> groups;
   std::vector<std::size_t> channel_sigmas;  // one a channel, or empty
-  std::vector<std::size_t> unused;          // columns of unknown meaning
+  std::vector<std::size_t> unused;          // columns that are not used and may tell rows apart
   std::vector<RowFilter> filters;
   Channels channels;
   ValueKind value_kind = ValueKind::kBrdf;

@@ -14,9 +14,10 @@ namespace lobefit {
 
 class MarkTally {
  public:
-  // Columns and words of a row's fields that hold no number.
-  void Add(const std::vector<std::pair<std::size_t, std::string_view>>& marks, std::uint32_t line) {
+  // Columns and words of a row's fields that hold no number; empty ones only where `empty_told`.
+  void Add(const std::vector<std::pair<std::size_t, std::string_view>>& marks, std::uint32_t line, bool empty_told) {
     for (const auto& [column, word] : marks) {
+      if (word.empty() && !empty_told) continue;
       const std::string text = Excerpt(word);
       auto known = marks_.begin();
       while (known != marks_.end() && known->word != text) ++known;

@@ -37,6 +37,7 @@ class RowParser {
 
  private:
   void TakeOther(std::string_view field, std::size_t column);
+  bool TakeCell(std::string_view text, std::size_t column);
   void SplitFast(std::string_view line);
   void SplitBlankSeparated(std::string_view line);
   bool IsSummary(std::string_view line) const;
@@ -45,6 +46,7 @@ class RowParser {
   const InputFile& file_;
   const CsvHeader& header_;
   NoValues no_values_;
+  std::size_t written_;                // columns that a row has fields of
   std::vector<unsigned char> needed_;  // 1: a number, 2: a text, 4: may have no value
   std::vector<double> numbers_;
   std::vector<std::string_view> texts_;
