@@ -21,6 +21,7 @@
 #include "lobefit/io/series.h"
 #include "lobefit/io/text/decoded_file.h"
 #include "lobefit/math/directions.h"
+#include "lobefit/measurement/checks/isotropy.h"
 #include "lobefit/synthesis/synthesis.h"
 
 namespace lobefit {
@@ -86,18 +87,6 @@ Paths WriteMountainFormat(const WriteSource& source, const WriteOptions&, const 
     return WriteMountain(*source.measurement, path);
   }
   return WriteMountain(Tabulated(source), path);
-}
-
-// All light (but that from the normal) at one azimuth: nothing speaks against an isotropic surface.
-bool HasOneAzimuth(const Samples& samples) {
-  std::optional<double> azimuth;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (std::hypot(samples.wi_x[i], samples.wi_y[i]) < 0.02) continue;
-    const double own = std::atan2(samples.wi_y[i], samples.wi_x[i]);
-    if (!azimuth) azimuth = own;
-    if (std::fabs(std::remainder(own - *azimuth, 2 * kPi)) > 0.01) return false;
-  }
-  return true;
 }
 
 // The samples of one azimuth as those of an isotropic surface. A table of `format` over (theta_h, theta_d, phi_d) can

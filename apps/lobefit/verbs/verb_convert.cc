@@ -13,6 +13,7 @@
 #include "lobefit/io/series.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/write.h"
+#include "lobefit/measurement/checks/isotropy.h"
 
 namespace lobefit {
 namespace {
@@ -30,7 +31,7 @@ std::string FormatNames() {
   return names;
 }
 
-std::string ToJson(const Conversion& conversion) {
+std::string ToJson(const Conversion& conversion, const std::string& shown_isotropic) {
   std::vector<std::string> files;
   for (const std::filesystem::path& file : conversion.files) files.push_back(file.string());
   const nlohmann::ordered_json json = {
@@ -38,6 +39,7 @@ std::string ToJson(const Conversion& conversion) {
       {"losses", conversion.losses},
       {"compared", conversion.difference.compared},
       {"not_compared", conversion.not_compared},
+      {"isotropic_because", shown_isotropic},
       {"relative_difference", conversion.difference.compared == 0
                                   ? nlohmann::ordered_json()
                                   : nlohmann::ordered_json{{"median", conversion.difference.median},
@@ -54,6 +56,18 @@ int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
   const WriteFormat& format = FindWriteFormat(name, out);
   Measurement measurement = verb.measurement.Load(in);
   measurement.isotropic = measurement.isotropic || verb.isotropic;
+  std::string shown;
+  if (!measurement.isotropic && format.is_grid && HasOneAzimuth(measurement.samples)) {
+    const IsotropicPairs pairs = CompareIsotropicPairs(measurement);
+    measurement.isotropic = pairs.ShowIsotropy();
+    if (measurement.isotropic) {
+      shown = fmt::format(
+          "light from one azimuth stands for all: {} pairs of samples that an isotropic surface alone makes equal "
+          "differ "
+          "by {:.2g} % in the median",
+          pairs.pairs, 100 * pairs.median);
+    }
+  }
   WriteSource source;
   source.measurement = &measurement;
   source.channels = measurement.channels;
@@ -66,10 +80,11 @@ int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
   }
   const Conversion conversion = Convert(source, format, {}, out);
   if (common.json) {
-    fmt::print("{}\n", ToJson(conversion));
+    fmt::print("{}\n", ToJson(conversion, shown));
     return 0;
   }
   for (const std::filesystem::path& file : conversion.files) fmt::print("{}: {}\n", file.string(), format.description);
+  if (!shown.empty()) fmt::print("Isotropic: {}\n", shown);
   for (const std::string& loss : conversion.losses) fmt::print("Lost: {}\n", loss);
   if (conversion.difference.compared == 0) {
     fmt::print("Not compared: {}\n", conversion.not_compared);

@@ -211,9 +211,23 @@ TEST(CsvLayouts, PolarisationOfTheLightAndOfTheViewer) {
   EXPECT_EQ(ReadText("wavelength (nm),theta_i,theta_o,pol,brdf\n550,10,20,u,1\n650,10,20,u,2\n").channels.size(), 2U);
 }
 
+TEST(CsvLayouts, ValuesNamedByABareAngleAreAsked) {
+  ReadOptions options;
+  options.columns = "theta_i=names";
+  for (const char* names : {"BRDF(10deg),BRDF(30deg)", "BRDF_10deg,BRDF_30deg", "f(10),f(30)", "10 deg,30 deg"}) {
+    const std::string text = "theta_s," + std::string(names) + "\n0,1,2\n20,3,4\n";
+    EXPECT_NE(MessageOf(text).find("by --columns, as in theta_i=names"), std::string::npos) << names;
+    const Measurement m = ReadText(text, options);
+    ASSERT_EQ(m.samples.size(), 4U) << names;
+    ExpectSample(m, 1, 30, 0, 0, 0, 2);
+  }
+}
+
 TEST(CsvLayouts, ReadingsOfADetectorAreAsked) {
   const std::string text = "theta_i,theta_o,dphi,counts\n10,20,180,500\n10,30,180,250\n";
   EXPECT_NE(MessageOf(text).find("choose them with --value-column \"counts\", and fit with --scale free"),
+            std::string::npos);
+  EXPECT_NE(MessageOf("theta_i,theta_o,Signal (V)\n10,20,5\n").find("--value-column \"Signal (V)\""),
             std::string::npos);
   ReadOptions options;
   options.value_column = "counts";

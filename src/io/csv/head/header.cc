@@ -98,7 +98,7 @@ class HeaderReader {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (lines_[i].comment) continue;
       Fields fields = SplitFields(lines_[i].text, separator);
-      std::vector<std::string> texts(units ? fields.size() : 0);  // of quotes within quotes
+      std::vector<std::string> texts(units && fields.size() > 1 ? fields.size() : 0);  // of quotes within quotes
       for (std::size_t k = 0; k < texts.size(); ++k) {
         const std::string_view field = Unquoted(fields[k], &texts[k]);
         if (ParseCell(field, '.') || ParseCell(field, ',')) fields[k] = NumberOfCell(field);

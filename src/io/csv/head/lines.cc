@@ -72,6 +72,9 @@ void SplitCsvLine(std::string_view line, char separator, std::vector<std::string
 
 std::optional<double> ParseCsvNumber(std::string_view field, char decimal_mark) {
   field = Trim(field);
+  if (decimal_mark == '.') {
+    if (const std::optional<double> number = ParseDouble(field)) return number;
+  }
   // The minus sign of typesetters and of some spreadsheets.
   constexpr std::string_view kMinus = "\xe2\x88\x92";
   if (const std::size_t minus = field.find(kMinus); minus != std::string_view::npos) {

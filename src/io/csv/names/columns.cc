@@ -250,7 +250,7 @@ bool ClassifyFixed(const NameList& words, CsvColumn* column) {
     while (digits > 0 && !(word[digits - 1] >= '0' && word[digits - 1] <= '9')) --digits;
     const std::string tail = word.substr(digits);
     if (!number && digits > 0 && ParseDouble(word.substr(0, digits)) && (tail.empty() || ParseAngleUnit(tail)) &&
-        word.find('e') == std::string::npos) {
+        word.substr(0, digits).find('e') == std::string::npos) {
       number = ParseDouble(word.substr(0, digits));
       if (!tail.empty()) unit = tail;
     } else if (!(ParseAngleUnit(word) && word != "deg") && word != "deg" && word != "at" && !IsValueWord(word)) {

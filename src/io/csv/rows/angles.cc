@@ -261,9 +261,12 @@ class AngleFinder {
       if (column.role != ColumnRole::kCoordinate) continue;
       for (const auto& [coordinate, other] : layout_.coordinates) {
         if (coordinate == column.coordinate)
-          Fail("the columns " + QuotedName(columns_[other]) + " and " + QuotedName(column) +
-               " mean the same; remove one of them, or put tables that stand side by side under headings as in 'AOI "
-               "10', or into files of their own");
+          Fail(
+              "the columns " + QuotedName(columns_[other]) + " and " + QuotedName(column) + " mean the same; " +
+              (ToLower(columns_[other].name) == ToLower(column.name)
+                   ? "put tables that stand side by side under headings as in 'AOI 10', or into files of their own, or "
+                     "remove one of them"
+                   : "remove one of them"));
       }
       directions.Give(column.coordinate, Scale(column), column.form);
       if (column.coordinate == C::kFromSpecular || column.coordinate == C::kBetaOffset)

@@ -32,7 +32,7 @@ std::string NamesOf(const std::vector<CsvColumn>& columns) {
 bool IsReading(const CsvColumn& column) {
   static constexpr std::array<std::string_view, 8> kReadings = {"counts", "signal",   "voltage",   "current",
                                                                 "power",  "radiance", "intensity", "raw"};
-  if (column.role != ColumnRole::kIgnored) return false;
+  if (column.role != ColumnRole::kIgnored && column.role != ColumnRole::kUnknown) return false;
   const NameList words = SplitName(column.name).words;
   return !words.empty() && std::find(kReadings.begin(), kReadings.end(), words[0]) != kReadings.end();
 }

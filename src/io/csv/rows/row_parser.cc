@@ -104,13 +104,18 @@ bool RowParser::TakeCell(std::string_view text, std::size_t column) {
   return true;
 }
 
+// Only its number is needed, and none stands for no value.
+bool RowParser::IsFast(std::size_t column) const {
+  const unsigned char needed = needed_[column];
+  return (needed & (kNumber | kText)) == kNumber && ((needed & kMayLack) == 0 || no_values_.empty());
+}
+
 void RowParser::SplitFast(std::string_view line) {
   const char separator = header_.separator, mark = header_.decimal_mark;
-  const bool all_plain = no_values_.empty();
   std::size_t begin = 0;
   while (true) {
     // Most fields are plain numbers that fill their field: one pass over the characters.
-    if (columns_ < written_ && (needed_[columns_] & (kNumber | kText)) == kNumber && begin < line.size()) {
+    if (columns_ < written_ && IsFast(columns_) && begin < line.size()) {
       const std::size_t quote = line[begin] == '"' ? 1 : 0;
       std::size_t length = 0;
       // Between commas only a number in quotes has a decimal comma.
@@ -118,8 +123,7 @@ void RowParser::SplitFast(std::string_view line) {
           ParsePlainDecimal(line.substr(begin + quote), &length, mark == separator && quote == 0 ? '.' : mark);
       std::size_t end = begin + quote + length;
       if (plain && quote == 1) end = end < line.size() && line[end] == '"' ? end + 1 : line.size() + 1;
-      if (plain && (end == line.size() || (end < line.size() && line[end] == separator)) &&
-          (all_plain || (needed_[columns_] & kMayLack) == 0)) {
+      if (plain && (end == line.size() || (end < line.size() && line[end] == separator))) {
         numbers_[columns_++] = *plain;
         ++good_;
         if (end == line.size()) return;
@@ -149,7 +153,7 @@ void RowParser::SplitBlankSeparated(std::string_view line) {
     if (at == line.size()) return;
     std::size_t length = 0;
     std::optional<double> plain;
-    if (columns_ < written_ && needed_[columns_] == kNumber)
+    if (columns_ < written_ && IsFast(columns_))
       plain = ParsePlainDecimal(line.substr(at), &length, header_.decimal_mark);
     std::size_t end = at + length;
     if (plain && (end == line.size() || is_blank(line[end]))) {

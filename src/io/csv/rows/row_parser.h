@@ -38,6 +38,7 @@ class RowParser {
  private:
   void TakeOther(std::string_view field, std::size_t column);
   bool TakeCell(std::string_view text, std::size_t column);
+  bool IsFast(std::size_t column) const;
   void SplitFast(std::string_view line);
   void SplitBlankSeparated(std::string_view line);
   bool IsSummary(std::string_view line) const;
