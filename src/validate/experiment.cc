@@ -68,8 +68,8 @@ Measurement TurnedMeasurement(const Experiment& experiment, const Truth& truth, 
 Measurement MeasurementOf(const Experiment& experiment, const Truth& truth, std::uint64_t seed) {
   const std::uint64_t first = StreamSeed(seed, kNoise);
   const Noise noise = DrawnNoise(experiment.noise, first);
-  Measurement measurement =
-      Synthesise(experiment.directions, ChannelsNamed(truth.channels), BrdfOf(truth), noise, first, SmallestAlpha(truth));
+  Measurement measurement = Synthesise(experiment.directions, ChannelsNamed(truth.channels), BrdfOf(truth), noise,
+                                       first, SmallestAlpha(truth));
   if (experiment.turned) {
     measurement = Pool(
         {std::move(measurement), TurnedMeasurement(experiment, truth, noise, StreamSeed(seed, kTurnedNoise))}, false);

@@ -33,8 +33,8 @@ int RunSynth(const SynthVerb& verb, const CommonOptions& common) {
   const MeasurementLayout layout = MakeLayout(verb.synthesis.Layout(), truth);
   RequireApertureWithin(layout, noise);
   const BrdfFunction brdf = BrdfOf(truth);
-  Measurement measurement =
-      Synthesise(layout.directions, ChannelsNamed(truth.channels), brdf, noise, verb.synthesis.seed(), SmallestAlpha(truth));
+  Measurement measurement = Synthesise(layout.directions, ChannelsNamed(truth.channels), brdf, noise,
+                                       verb.synthesis.seed(), SmallestAlpha(truth));
   measurement.isotropic = layout.isotropic;
   measurement.source = "synthetic";
   const TruthRecord record = {truth, noise, verb.synthesis.seed(), common.command};

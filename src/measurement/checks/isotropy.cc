@@ -52,11 +52,11 @@ bool HasOneAzimuth(const Samples& samples) {
 }
 
 bool IsotropicPairs::ShowIsotropy() const {
-  return pairs >= 30 && bright >= 5 && median < 0.03 && percentile_90 < 0.1 && bright_median < 0.03;
+  return pairs >= 20 && bright >= 10 && median < 0.03 && percentile_90 < 0.1 && bright_median < 0.03;
 }
 
 IsotropicPairs CompareIsotropicPairs(const Measurement& measurement) {
-  constexpr double kSame = 0.005, kApart = 15 * kPi / 180, kOffNormal = 3 * kPi / 180;
+  constexpr double kSame = 0.005, kApart = 10 * kPi / 180, kOffNormal = 3 * kPi / 180;
   const Samples& samples = measurement.samples;
   IsotropicPairs result;
   if (samples.size() == 0) return result;
@@ -65,7 +65,7 @@ IsotropicPairs CompareIsotropicPairs(const Measurement& measurement) {
   const Interpolator interpolator(isotropic);
   std::vector<double> means(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) means[i] = MeanValue(samples, i);
-  const double bright = QuantileOf(means, 0.9);
+  const double bright = QuantileOf(means, 0.5);
   // The half vector's azimuth from the plane of incidence; about the normal it has none.
   const auto azimuth = [&](std::size_t i) -> std::optional<double> {
     const Vec3 wi = samples.wi(i), h = Normalized(wi + samples.wo(i));

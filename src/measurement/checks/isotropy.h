@@ -18,11 +18,12 @@ bool HasOneAzimuth(const Samples& samples);
 // Samples of light at one azimuth that reciprocity and isotropy would make equal, and that an anisotropic surface sees
 // with half vectors at other azimuths, whichever way its grain runs.
 struct IsotropicPairs {
-  std::size_t pairs = 0, bright = 0;     // bright: among the largest tenth of the values
+  std::size_t pairs = 0, bright = 0;     // bright: in the larger half of the values
   double median = 0, percentile_90 = 0;  // of the relative differences
   double bright_median = 0;
 
-  // Enough of them agree, the bright ones too: within what good instruments scatter by.
+  // Enough of them agree, the bright ones too: within what good instruments scatter by. Widths of 0.25 and 0.22, seen
+  // every 10 degrees, differ by 8 % in the median.
   bool ShowIsotropy() const;
 };
 IsotropicPairs CompareIsotropicPairs(const Measurement& measurement);

@@ -30,8 +30,8 @@ TEST(SpreadOverAzimuths, TurnsEveryPairAsAWhole) {
   EXPECT_LT(std::hypot(sum_x, sum_y) / 200, 0.02 * std::sin(0.4));
 }
 
-// Nine incidences at one azimuth, the hemisphere of viewers, of a lobe whose widths along x and y, turned by `turn`, are
-// given, with the relative scatter of an instrument.
+// Nine incidences at one azimuth, the hemisphere of viewers, of a lobe whose widths along x and y, turned by `turn`,
+// are given, with the relative scatter of an instrument.
 Measurement OneAzimuth(double alpha_x, double alpha_y, double turn, double scatter) {
   MeasurementBuilder builder({{"Y"}, {}});
   std::uint32_t line = 0;

@@ -19,7 +19,8 @@ struct SideTable {
 
 // Tables of two columns or more with the same meanings in the same order, empty columns between them aside; nothing
 // where the columns are not such, or where only some headings say an angle, or another one than the first. The columns
-// of all but the first become ones that are not used by themselves. `headings` are the cells above the names of the `written_columns`.
+// of all but the first become ones that are not used by themselves. `headings` are the cells above the names of the
+// `written_columns`.
 std::vector<SideTable> FindSideTables(const std::vector<std::string_view>& headings, std::size_t written_columns,
                                       std::vector<CsvColumn>* columns);
 

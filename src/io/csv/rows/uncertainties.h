@@ -7,9 +7,9 @@
 
 namespace lobefit {
 
-// Gives the groups of `layout`, its channels or all of them the columns of their uncertainties: those of the names, those
-// behind each value in a table with a column for each angle, or those that stand for uncertainties within cells. Throws
-// InputError where some lack one, or where weights are given too.
+// Gives the groups of `layout`, its channels or all of them the columns of their uncertainties: those of the names,
+// those behind each value in a table with a column for each angle, or those that stand for uncertainties within cells.
+// Throws InputError where some lack one, or where weights are given too.
 void FindUncertainties(const InputFile& file, const CsvHeader& header, const std::vector<CsvColumn>& columns,
                        CsvLayout* layout, Measurement* notes);
 
