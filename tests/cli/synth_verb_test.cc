@@ -56,9 +56,9 @@ TEST_F(SynthVerb, TheSamplesAreMadeByTheCommandsOfTheirReadme) {
 
 TEST_F(SynthVerb, OneWavelengthStaysOne) {
   const ProgramResult result = Shell(
-      "lobefit synth $SOURCE/samples/satin_plastic.toml --channels 633nm --theta-i 30 --detector-step 30 --out "
-      "laser.csv "
-      "&& lobefit info laser.csv");
+      "printf '[[lobe]]\\nndf = \"ggx\"\\n[parameters]\\nalpha_x = { start = 0.25 }\\nf0 = { start = 0.5 }\\n"
+      "diffuse = { start = 0.1 }\\n' > laser.toml && lobefit synth laser.toml --channels 633nm --theta-i 30 "
+      "--detector-step 30 --out laser.csv && lobefit info laser.csv");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("channels     633nm"), std::string::npos) << result.out;
 }
