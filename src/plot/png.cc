@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <png.h>
+#include <zlib.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/files/file.h"
@@ -43,9 +44,13 @@ std::string EncodePng(const cv::Mat& rgb, double pixels_per_inch) {
   // Figures are flat: the filter "up" with a low level is four times as fast as the default and about as small.
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
   png_set_compression_level(writer.png, 4);
-  // Of a small picture clearing zlib's memory would take longer than packing.
+  // Of a small picture clearing zlib's memory would take longer than packing, and looking for more than runs takes twice
+  // the time for a fiftieth of the bytes.
   constexpr std::size_t kSmallPixels = 1 << 16;
-  if (rgb.total() < kSmallPixels) png_set_compression_mem_level(writer.png, 5);
+  if (rgb.total() < kSmallPixels) {
+    png_set_compression_mem_level(writer.png, 5);
+    png_set_compression_strategy(writer.png, Z_RLE);
+  }
   if (pixels_per_inch > 0) {
     const auto per_metre = static_cast<png_uint_32>(std::lround(pixels_per_inch / 0.0254));
     png_set_pHYs(writer.png, writer.info, per_metre, per_metre, PNG_RESOLUTION_METER);

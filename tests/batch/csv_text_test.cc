@@ -43,7 +43,10 @@ TEST(CsvText, RefusesBrokenQuotesWithTheirLine) {
 TEST(CsvText, WritesWhatItReads) {
   const std::vector<std::string> texts = {"plain", "a,b", "say \"x\"", "two\nlines", " blank ", ""};
   std::string line;
-  for (const std::string& text : texts) line += (line.empty() ? "" : ",") + CsvField(text);
+  for (const std::string& text : texts) {
+    if (!line.empty()) line += ',';
+    AppendCsvField(text, &line);
+  }
   EXPECT_THAT(All(line + "\n"), ElementsAre(testing::ElementsAreArray(texts)));
 }
 

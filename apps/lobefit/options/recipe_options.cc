@@ -144,8 +144,14 @@ void RecipeOptions::AddTo(CLI::App* app) {
   instrument_.AddTo(app);
 }
 
+void RecipeOptions::Keep() {
+  if (IsAutomatic()) return;
+  kept_use_ = UsedByDocument();
+  kept_ = LoadRecipe(recipe_);
+}
+
 Recipe RecipeOptions::Choose(const Measurement& measurement) const {
-  Recipe recipe = recipe_ == "auto" ? ChooseAutomatically(measurement) : LoadRecipe(recipe_);
+  Recipe recipe = IsAutomatic() ? ChooseAutomatically(measurement) : Named();
   recipe.plane_azimuth = TraitsOf(measurement).plane_azimuth;
   overrides_.Apply(&recipe);
   instrument_.Apply(&recipe);
@@ -153,7 +159,7 @@ Recipe RecipeOptions::Choose(const Measurement& measurement) const {
 }
 
 std::string RecipeOptions::Resolved() const {
-  Recipe recipe = IsAutomatic() ? Recipe() : LoadRecipe(recipe_);
+  Recipe recipe = IsAutomatic() ? Recipe() : Named();
   overrides_.Apply(&recipe);
   if (IsAutomatic()) return "recipe = auto\n";
   std::string text = ToToml(recipe);
@@ -166,6 +172,7 @@ std::string RecipeOptions::Resolved() const {
 }
 
 std::optional<RecipeUsed> RecipeOptions::UsedByDocument() const {
+  if (kept_) return kept_use_;
   if (IsAutomatic() || !IsDocument(recipe_)) return std::nullopt;
   return UsedBy(ReadMaterial(recipe_), recipe_);
 }

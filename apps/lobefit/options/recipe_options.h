@@ -15,6 +15,10 @@
 
 namespace lobefit {
 
+// A recipe file, a recipe of the library by its name ("ellipsoid"), or that of a *.material.json. Throws InputError that
+// lists the names.
+Recipe LoadRecipe(const std::string& name_or_path);
+
 // Single choices that override those of a recipe.
 class RecipeOverrides {
  public:
@@ -32,6 +36,8 @@ class RecipeOptions {
  public:
   void AddTo(CLI::App* app);
   bool IsAutomatic() const { return recipe_ == "auto"; }
+  // Reads the recipe once for all that follows, whatever becomes of its file: for many fits. Throws InputError.
+  void Keep();
   // Throws UsageError and InputError.
   Recipe Choose(const Measurement& measurement) const;
   const RecipeOverrides& overrides() const { return overrides_; }
@@ -43,7 +49,11 @@ class RecipeOptions {
   std::string Resolved() const;
 
  private:
+  Recipe Named() const { return kept_ ? *kept_ : LoadRecipe(recipe_); }
+
   std::string recipe_ = "auto";
+  std::optional<Recipe> kept_;
+  std::optional<RecipeUsed> kept_use_;  // of `kept_`, where it is a document's
   RecipeOverrides overrides_;
   InstrumentOptions instrument_;
 };
@@ -63,10 +73,6 @@ class FittedModel {
   std::string recipe_, metric_;
   InstrumentOptions instrument_;
 };
-
-// A recipe file, a recipe of the library by its name ("ellipsoid"), or that of a *.material.json. Throws InputError that
-// lists the names.
-Recipe LoadRecipe(const std::string& name_or_path);
 
 // Says in the measurement, and so in every result, what the values are taken for where the recipe's scale is free.
 void RemarkFreeScale(const Recipe& recipe, Measurement* measurement);

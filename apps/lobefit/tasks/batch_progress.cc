@@ -16,7 +16,7 @@ namespace {
 std::string ShareOf(const DoneRecord& done) {
   if (done.row.empty()) return NameOf(done.status);
   for (const FlatMember& member : FlatMembers(done.row)) {
-    if (member.name == "verdict" && member.kind == FlatMember::Kind::kString) return member.value;
+    if (member.name == "verdict" && member.kind == FlatMember::Kind::kString) return std::string(member.value);
   }
   return NameOf(done.status);
 }

@@ -57,6 +57,8 @@ std::string TaskOptions::SettingsOf(const OptionWords& words) {
     throw UsageError(error.what());
   }
   options->measurement.Check();
+  // The digest speaks for the text that is fitted by.
+  options->recipe.Keep();
   text += options->recipe.Resolved();
   options_.emplace(words, std::move(options));
   return Sha256Hex(text);

@@ -66,15 +66,18 @@ bool CsvRecords::Next(std::vector<std::string>* fields) {
   return false;
 }
 
-std::string CsvField(std::string_view text) {
-  const bool plain = text.find_first_of(",\"\r\n") == std::string_view::npos && Trim(text) == text;
-  if (plain) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
+void AppendCsvField(std::string_view text, std::string* line) {
+  const auto is_special = [](char c) { return c == ',' || c == '"' || c == '\r' || c == '\n'; };
+  if (std::none_of(text.begin(), text.end(), is_special) && Trim(text) == text) {
+    *line += text;
+    return;
   }
-  return quoted + '"';
+  *line += '"';
+  for (const char c : text) {
+    if (c == '"') *line += '"';
+    *line += c;
+  }
+  *line += '"';
 }
 
 }  // namespace lobefit

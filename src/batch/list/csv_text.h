@@ -26,7 +26,7 @@ class CsvRecords {
   std::size_t at_ = 0, line_ = 1, line_number_ = 0;
 };
 
-// The field as a table holds it: in quotes where it has to be.
-std::string CsvField(std::string_view text);
+// Appends the field as a table holds it: in quotes where it has to be.
+void AppendCsvField(std::string_view text, std::string* line);
 
 }  // namespace lobefit

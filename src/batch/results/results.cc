@@ -33,7 +33,7 @@ std::string UtcText(double seconds) {
 void AppendLine(const std::vector<std::string>& fields, std::string* text) {
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (i > 0) *text += ',';
-    *text += CsvField(fields[i]);
+    AppendCsvField(fields[i], text);
   }
   *text += '\n';
 }
@@ -83,7 +83,8 @@ BlockColumns ColumnsOf(const ResultTable& table, std::size_t block) {
     std::size_t hint = 0;
     for (const FlatMember& member : FlatMembers(text)) {
       columns.names.Add(member.name, &hint);
-      if (member.name == "verdict" && member.kind == FlatMember::Kind::kString) ++columns.verdicts[member.value];
+      if (member.name == "verdict" && member.kind == FlatMember::Kind::kString)
+        ++columns.verdicts[std::string(member.value)];
     }
   });
   return columns;
@@ -169,7 +170,7 @@ const std::vector<std::string>& RowTexts::Of(const ResultTable::Row& row) {
   const std::string_view result = reader_.Read(*row.done);
   if (result.empty()) return texts_;
   for (const FlatMember& member : FlatMembers(result))
-    put(member.name, member.kind == FlatMember::Kind::kNull ? "" : std::string_view(member.value));
+    put(member.name, member.kind == FlatMember::Kind::kNull ? "" : member.value);
   return texts_;
 }
 

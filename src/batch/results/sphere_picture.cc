@@ -65,11 +65,7 @@ SpherePicture DrawSpheres(const Material& material, const Measurement& measureme
   if (material.sel) return {};
   const FittedFunction function(material);
   const ChannelColor to_color(measurement.channels);
-  const auto evaluate = [&](const Vec3& wi, const Vec3& wo, double* f_r) {
-    function.Evaluate(wi, wo, f_r);
-    return true;
-  };
-  const LitSphere fitted = LightSphere(evaluate, to_color, function.channels(), kSize);
+  const LitSphere fitted = LightFitted(function, to_color, kSize);
   std::optional<LitSphere> measured;
   if (measurement.isotropic) measured = LightMeasured(NearLight(measurement), to_color, kSize);
   const double exposure = SphereExposure(measured ? *measured : fitted);

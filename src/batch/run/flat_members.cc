@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <nlohmann/json.hpp>
+#include <rapidjson/reader.h>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text/text.h"
@@ -10,36 +10,32 @@
 namespace lobefit {
 namespace {
 
-// Members as the parser meets them. False ends the parsing: of nested values, and of what is no object.
-class MemberReader : public nlohmann::json_sax<nlohmann::json> {
+// Members as the parser meets them, each a part of the text that it parses in place. False ends the parsing: of nested
+// values, and of what is no object.
+class MemberReader : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, MemberReader> {
  public:
   explicit MemberReader(std::vector<FlatMember>* members) : members_(*members) {}
 
-  bool null() override { return Take("null", FlatMember::Kind::kNull); }
-  bool boolean(bool value) override { return Take(value ? "true" : "false", FlatMember::Kind::kBoolean); }
-  bool number_integer(number_integer_t value) override {
-    return Take(std::to_string(value), FlatMember::Kind::kNumber);
+  bool Default() { return false; }
+  bool Null() { return Take("null", FlatMember::Kind::kNull); }
+  bool Bool(bool value) { return Take(value ? "true" : "false", FlatMember::Kind::kBoolean); }
+  bool RawNumber(const char* text, rapidjson::SizeType length, bool) {
+    return Take({text, length}, FlatMember::Kind::kNumber);
   }
-  bool number_unsigned(number_unsigned_t value) override {
-    return Take(std::to_string(value), FlatMember::Kind::kNumber);
+  bool String(const char* text, rapidjson::SizeType length, bool) {
+    return Take({text, length}, FlatMember::Kind::kString);
   }
-  bool number_float(number_float_t, const string_t& text) override { return Take(text, FlatMember::Kind::kNumber); }
-  bool string(string_t& value) override { return Take(std::move(value), FlatMember::Kind::kString); }
-  bool binary(binary_t&) override { return false; }
-  bool start_object(std::size_t) override { return !std::exchange(is_within_, true); }
-  bool key(string_t& name) override {
-    members_.emplace_back().name = std::move(name);
+  bool StartObject() { return !std::exchange(is_within_, true); }
+  bool Key(const char* text, rapidjson::SizeType length, bool) {
+    members_.emplace_back().name = {text, length};
     return true;
   }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return false; }
-  bool end_array() override { return false; }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+  bool EndObject(rapidjson::SizeType) { return true; }
 
  private:
-  bool Take(std::string value, FlatMember::Kind kind) {
+  bool Take(std::string_view value, FlatMember::Kind kind) {
     if (!is_within_) return false;
-    members_.back().value = std::move(value);
+    members_.back().value = value;
     members_.back().kind = kind;
     return true;
   }
@@ -50,12 +46,15 @@ class MemberReader : public nlohmann::json_sax<nlohmann::json> {
 
 }  // namespace
 
-std::vector<FlatMember> FlatMembers(std::string_view text) {
-  std::vector<FlatMember> members;
-  MemberReader reader(&members);
-  if (!nlohmann::json::sax_parse(text, &reader))
+FlatMembers::FlatMembers(std::string_view text) : text_(text) {
+  constexpr unsigned kFlags =
+      rapidjson::kParseInsituFlag | rapidjson::kParseNumbersAsStringsFlag | rapidjson::kParseValidateEncodingFlag;
+  MemberReader handler(&members_);
+  rapidjson::Reader reader;
+  rapidjson::InsituStringStream stream(text_.data());
+  // The parser takes a zero for the end.
+  if (text.find('\0') != std::string_view::npos || !reader.Parse<kFlags>(stream, handler))
     throw InputError("'" + Excerpt(text) + "' is no JSON object without nested ones");
-  return members;
 }
 
 }  // namespace lobefit

@@ -66,7 +66,7 @@ std::vector<FileStamp> StampsFrom(std::string_view text) {
 }
 
 // The first member says what a line is.
-void ParseDone(const std::vector<FlatMember>& members, DoneRecord* done) {
+void ParseDone(const FlatMembers& members, DoneRecord* done) {
   constexpr int kMembers = 13;
   int seen = 0;
   for (const auto& [name, value, kind] : members) {
@@ -129,9 +129,9 @@ void ParseLine(std::string_view line, std::uint64_t offset, SegmentLines* parsed
   const std::string_view row = RowOf(line);
   const std::string head =
       row.empty() ? std::string(line) : std::string(line.substr(0, line.size() - row.size() - kRow.size())) + "}";
-  const std::vector<FlatMember> in_order = FlatMembers(head);
-  if (in_order.empty()) return;
-  if (in_order[0].name == "done") {
+  const FlatMembers in_order(head);
+  if (in_order.begin() == in_order.end()) return;
+  if (in_order.begin()->name == "done") {
     DoneRecord done;
     ParseDone(in_order, &done);
     done.row_bytes = row.size();

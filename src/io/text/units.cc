@@ -185,16 +185,17 @@ std::string PlainUnit(std::string_view unit) {
   std::string plain;
   bool apart = false;  // a blank before
   while (!unit.empty()) {
-    bool replaced = false;
-    for (const auto& [sign, text] : kSigns) {
-      if (!unit.starts_with(sign)) continue;
-      plain += text;
-      unit.remove_prefix(sign.size());
-      replaced = true;
-      break;
-    }
-    if (replaced) continue;
     const char c = unit.front();
+    // Names and keys of a file's head are asked for their unit dozens of times: most letters begin no sign.
+    const bool may_be_sign = static_cast<unsigned char>(c) >= 0x80 || c == '{' || c == '}' || c == '$' || c == '\\';
+    const auto* entry = may_be_sign ? std::find_if(kSigns.begin(), kSigns.end(),
+                                                   [&](const auto& sign) { return unit.starts_with(sign.first); })
+                                    : kSigns.end();
+    if (entry != kSigns.end()) {
+      plain += entry->second;
+      unit.remove_prefix(entry->first.size());
+      continue;
+    }
     unit.remove_prefix(1);
     // "1e-3 1/sr" is a product, not 1e-31.
     const bool between = IsDigit(c) && apart && !plain.empty() && IsDigit(plain.back());

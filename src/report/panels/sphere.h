@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "lobefit/core/ellipsoid/off_center.h"
+#include "lobefit/measurement/measurement.h"
 #include "lobefit/plot/color.h"
-#include "lobefit/report/figures/report_data.h"
+#include "lobefit/report/figures/fitted_function.h"
 
 namespace lobefit {
 
@@ -26,8 +27,7 @@ using ShownBrdf = std::function<bool(const Vec3& wi, const Vec3& wo, double* f_r
 
 // Towards the light; the viewer is at +z.
 Vec3 SphereLight();
-LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size);
-LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int size);
+LitSphere LightFitted(const FittedFunction& fitted, const ChannelColor& to_color, int size);
 // The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
 std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size);
 

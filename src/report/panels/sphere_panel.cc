@@ -53,6 +53,55 @@ bool SphereFrame(int column, int row, int size, Frame* frame) {
 
 using Sphere = LitSphere;
 
+// The pixels of a row that see the light, with both directions in the frame of their point.
+struct LitRow {
+  std::vector<std::size_t> pixel;
+  std::array<std::vector<double>, 6> d;  // wi.x ... wo.z
+
+  Vec3 wi(std::size_t i) const { return {d[0][i], d[1][i], d[2][i]}; }
+  Vec3 wo(std::size_t i) const { return {d[3][i], d[4][i], d[5][i]}; }
+  void Light(std::size_t i, const Color& f_r, Sphere* sphere) const {
+    for (std::size_t k = 0; k < 3; ++k) sphere->color[pixel[i]][k] = f_r[k] * d[2][i] * kPi;
+  }
+};
+
+void FindLit(int row, int size, LitRow* lit) {
+  const Vec3 light = SphereLight(), view = {0, 0, 1};
+  lit->pixel.clear();
+  for (std::vector<double>& component : lit->d) component.clear();
+  for (int column = 0; column < size; ++column) {
+    Frame frame;
+    if (!SphereFrame(column, row, size, &frame)) continue;
+    const Vec3 wi = frame.ToLocal(light), wo = frame.ToLocal(view);
+    if (wi.z <= 0 || wo.z <= 0) continue;
+    lit->pixel.push_back(PixelIndex(column, row, size));
+    const double all[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
+    for (std::size_t j = 0; j < 6; ++j) lit->d[j].push_back(all[j]);
+  }
+}
+
+Sphere Unlit(int size) {
+  const std::size_t pixels = PixelIndex(0, size, size);
+  return {size, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
+}
+
+Sphere LightSphere(const Brdf& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
+  Sphere sphere = Unlit(size);
+  LitRow lit;
+  std::vector<double> f_r(channels);
+  for (int row = 0; row < size; ++row) {
+    FindLit(row, size, &lit);
+    for (std::size_t i = 0; i < lit.pixel.size(); ++i) {
+      if (brdf(lit.wi(i), lit.wo(i), f_r.data())) {
+        lit.Light(i, to_color.Linear(f_r.data()), &sphere);
+      } else {
+        sphere.known[lit.pixel[i]] = 0;
+      }
+    }
+  }
+  return sphere;
+}
+
 Vec3 Sun() { return Normalized(Vec3{-0.45, 0.6, 0.75}); }
 
 // Radiance of the sky: bright horizon, blue zenith, dark ground, a broad glow around the sun.
@@ -132,24 +181,19 @@ void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
 
 Vec3 SphereLight() { return Normalized(Vec3{-0.45, 0.6, 0.75}); }
 
-LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
-  const Vec3 light = SphereLight(), view = {0, 0, 1};
-  const std::size_t pixels = PixelIndex(0, size, size);
-  LitSphere sphere = {size, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
-  std::vector<double> f_r(channels);
+LitSphere LightFitted(const FittedFunction& fitted, const ChannelColor& to_color, int size) {
+  LitSphere sphere = Unlit(size);
+  LitRow lit;
+  const std::array<std::vector<double>, 6>& d = lit.d;
+  std::vector<std::vector<double>> f_r;
+  std::vector<double> values(fitted.channels());
   for (int row = 0; row < size; ++row) {
-    for (int column = 0; column < size; ++column) {
-      Frame frame;
-      if (!SphereFrame(column, row, size, &frame)) continue;
-      const Vec3 wi = frame.ToLocal(light), wo = frame.ToLocal(view);
-      if (wi.z <= 0 || wo.z <= 0) continue;
-      const std::size_t pixel = PixelIndex(column, row, size);
-      if (!brdf(wi, wo, f_r.data())) {
-        sphere.known[pixel] = 0;
-        continue;
-      }
-      const Color c = to_color.Linear(f_r.data());
-      for (std::size_t k = 0; k < 3; ++k) sphere.color[pixel][k] = c[k] * wi.z * kPi;
+    FindLit(row, size, &lit);
+    fitted.Evaluate({d[0].data(), d[1].data(), d[2].data(), d[3].data(), d[4].data(), d[5].data(), lit.pixel.size()},
+                    &f_r);
+    for (std::size_t i = 0; i < lit.pixel.size(); ++i) {
+      for (std::size_t c = 0; c < values.size(); ++c) values[c] = f_r[c][i];
+      lit.Light(i, to_color.Linear(values.data()), &sphere);
     }
   }
   return sphere;
@@ -211,14 +255,6 @@ LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& coordinates, 
   return sphere;
 }
 
-LitSphere LightFitted(const ReportData& data, const ChannelColor& to_color, int size) {
-  const ShownBrdf fitted = [&data](const Vec3& wi, const Vec3& wo, double* f_r) {
-    data.fitted.Evaluate(wi, wo, f_r);
-    return true;
-  };
-  return LightSphere(fitted, to_color, data.channels(), size);
-}
-
 std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size) {
   if (!measurement.isotropic) return std::nullopt;
   const IsotropicLookup lookup(measurement);
@@ -261,7 +297,7 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     // A narrow lobe in a sparse table leaves holes and rings under the sky: that is no measured appearance.
     spheres->sky = spheres->measured && IsCovered(spheres->sphere[2]);
   }
-  spheres->sphere[1] = LightFitted(data, to_color, kLightSize);
+  spheres->sphere[1] = LightFitted(data.fitted, to_color, kLightSize);
   spheres->sphere[3] = SkySphere(fitted, lobe, to_color, data.channels(),
                                  spheres->sky ? kSkySamples : kSkySamplesOfAModel, data.threads);
   // One exposure for a pair: the measured sphere sets it.

@@ -266,8 +266,11 @@ bool Decompose(std::string_view word, std::vector<std::string_view>* english) {
 std::string TranslateScripts(std::string_view name) {
   std::string text;
   while (!name.empty()) {
-    const auto* entry = std::find_if(kScripts.begin(), kScripts.end(),
-                                     [&](const Translation& t) { return name.starts_with(t.foreign); });
+    // Of the words of kScripts only "+-" and its like begin in ASCII.
+    const bool may_begin = static_cast<unsigned char>(name.front()) >= 0x80 || name.front() == '+';
+    const auto* entry = may_begin ? std::find_if(kScripts.begin(), kScripts.end(),
+                                                 [&](const Translation& t) { return name.starts_with(t.foreign); })
+                                  : kScripts.end();
     if (entry != kScripts.end()) {
       const bool bracket = entry->english.size() == 1;
       text += bracket ? std::string(entry->english) : " " + std::string(entry->english) + " ";

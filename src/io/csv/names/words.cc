@@ -115,8 +115,10 @@ bool IsLetter(char c) { return IsLower(c) || IsUpper(c); }
 std::string ToAscii(std::string_view name) {
   std::string ascii;
   while (!name.empty()) {
-    const auto* entry = std::find_if(kLetters.begin(), kLetters.end(),
-                                     [&](const auto& letter) { return name.starts_with(letter.first); });
+    const bool is_ascii = static_cast<unsigned char>(name.front()) < 0x80;
+    const auto* entry = is_ascii ? kLetters.end()
+                                 : std::find_if(kLetters.begin(), kLetters.end(),
+                                                [&](const auto& letter) { return name.starts_with(letter.first); });
     if (entry != kLetters.end()) {
       ascii += entry->second;
       name.remove_prefix(entry->first.size());
