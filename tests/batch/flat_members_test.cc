@@ -59,12 +59,15 @@ TEST(FlatMembers, RefusesWhatIsNoFlatObject) {
                            R"({"a":"\ud83d"})",
                            R"({"a":"\ud83dx"})",
                            R"({"a":"\ude00"})",
+                           R"({"\udfff":1})",
                            "{\"a\":\"\n\"}",
                            R"({"a":"\)",
                            R"({a:1})"}) {
     EXPECT_THROW(Members(text), InputError) << text;
   }
 }
+
+TEST(FlatMembers, AZeroDoesNotEndTheText) { EXPECT_THROW(Members(std::string_view("{}\0x", 4)), InputError); }
 
 }  // namespace
 }  // namespace lobefit

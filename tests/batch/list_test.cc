@@ -114,6 +114,24 @@ TEST_F(InputsTest, SearchesFoldersByContent) {
   EXPECT_EQ(inputs.skipped, 3U);
 }
 
+TEST_F(InputsTest, LinksThatLeadNowhereAreSkippedAndCounted) {
+  Put("data/a.csv", kCsv);
+  std::filesystem::create_symlink("loop", folder_ / "data/loop");
+  std::filesystem::create_symlink("gone.csv", folder_ / "data/dangling.csv");
+  const Inputs inputs = Gather({"data"});
+  EXPECT_EQ(inputs.list.tasks.size(), 1U);
+  EXPECT_EQ(inputs.skipped, 2U);
+}
+
+TEST_F(InputsTest, AListWithOtherSeparatorsIsRefusedAsOne) {
+  Put("semicolons.csv", "file;recipe\na.csv;ggx\n");
+  Put("tabs.csv", "id\tfile\nx\ta.csv\n");
+  Put("measurement.csv", "theta_i;phi_i;theta_o;phi_o;value;file\n20;0;20;180;0.5;7\n");
+  for (const char* name : {"semicolons.csv", "tabs.csv"})
+    EXPECT_THAT([&] { Gather({name}); }, ThrowsMessage<InputError>(HasSubstr("write commas between the columns")));
+  EXPECT_EQ(Gather({"measurement.csv"}).list.tasks.size(), 1U);
+}
+
 TEST_F(InputsTest, ARowMayBeASeries) {
   for (const char* name : {"s[1]/scan_2.csv", "s[1]/scan_10.csv", "s[1]/other.csv", "s[1]/notes.md", "a;b.csv"})
     Put(name, std::string(name).ends_with("md") ? "hello" : kCsv);

@@ -86,7 +86,9 @@ class Gatherer {
       const DecodedFile file(input);
       // Alone it can only have been meant as a list; among others it is a measurement that fails.
       if (file.bytes().empty() && only_input_) return true;
-      return LooksLikeManifest(file.bytes(), names_);
+      if (LooksLikeManifest(file.bytes(), names_)) return true;
+      // Said of a list, not done to a measurement that has such a column.
+      return ListsFilesBetweenOthers(file.bytes()) && !NamesDirections({input, file.bytes()});
     } catch (const InputError&) {
       return false;
     }
@@ -147,21 +149,37 @@ class Gatherer {
     return HoldsMeasurement(path, common_.contains("columns"));
   }
 
+  void Skip(const Path& path) {
+    constexpr std::size_t kNamed = 5;
+    if (gathered_.skipped++ < kNamed) gathered_.some_skipped.push_back(path.string());
+  }
+
   void AddFolder(const Path& folder) {
     std::vector<Path> files;
-    std::filesystem::recursive_directory_iterator walk(folder);
-    for (; walk != std::filesystem::recursive_directory_iterator(); ++walk) {
-      const bool hidden = walk->path().filename().string().starts_with(".");
-      const bool ours = walk->is_directory() && std::filesystem::weakly_canonical(walk->path()) == out_;
-      if (hidden || ours) walk.disable_recursion_pending();
-      if (!hidden && walk->is_regular_file()) files.push_back(walk->path());
+    try {
+      std::filesystem::recursive_directory_iterator walk(folder);
+      for (; walk != std::filesystem::recursive_directory_iterator(); ++walk) {
+        std::error_code error;
+        const bool hidden = walk->path().filename().string().starts_with(".");
+        const bool ours = walk->is_directory(error) && std::filesystem::weakly_canonical(walk->path()) == out_;
+        if (hidden || ours) walk.disable_recursion_pending();
+        if (hidden) continue;
+        if (walk->is_regular_file(error)) {
+          files.push_back(walk->path());
+        } else if (walk->is_symlink(error) && !walk->exists(error)) {
+          Skip(walk->path());  // a link that leads nowhere, or to itself
+        }
+      }
+    } catch (const std::filesystem::filesystem_error& error) {
+      throw InputError(fmt::format("{}: cannot be searched: {}; check the permissions, or name the files",
+                                   Excerpt(error.path1().empty() ? folder.string() : error.path1().string(), 200),
+                                   error.code().message()));
     }
     std::sort(files.begin(), files.end());
     for (const Path& path : files) {
       const std::string file = path.lexically_relative(folder).generic_string();
       if (!IsMeasurement(path)) {
-        constexpr std::size_t kNamed = 5;
-        if (gathered_.skipped++ < kNamed) gathered_.some_skipped.push_back(path.string());
+        Skip(path);
         continue;
       }
       Append({IdOf(file), file, std::filesystem::absolute(path).lexically_normal(), 0, {}, "", {}, path.string()});

@@ -54,8 +54,9 @@ Header ReadHeader(const std::vector<std::string>& fields, const std::string& nam
     }
   }
   if (header.file == Header::kNone) {
-    throw InputError(fmt::format("{}, line 1: a manifest needs the column 'file'; its columns are {}", name,
-                                 Excerpt(Join(fields), 200)));
+    const bool other = ListsFilesBetweenOthers(Join(fields, ","));
+    throw InputError(fmt::format("{}, line 1: a manifest needs the column 'file'; its columns are {}{}", name,
+                                 Excerpt(Join(fields), 200), other ? "; write commas between the columns" : ""));
   }
   return header;
 }
@@ -97,6 +98,16 @@ bool LooksLikeManifest(std::string_view text, const ManifestNames& names) {
   return std::any_of(fields.begin(), fields.end(), [&](const std::string& field) {
     return field == "file" || field == "id" || Contains(names.options, field);
   });
+}
+
+bool ListsFilesBetweenOthers(std::string_view text) {
+  const std::string_view head = text.substr(0, std::min(text.find('\n'), std::size_t{65536}));
+  for (const char separator : {';', '\t'}) {
+    const std::vector<std::string_view> fields = Split(head, separator);
+    if (std::any_of(fields.begin(), fields.end(), [](std::string_view field) { return Trim(field) == "file"; }))
+      return fields.size() > 1;
+  }
+  return false;
 }
 
 std::string IdOf(const std::string& file) {

@@ -20,6 +20,8 @@ struct ManifestNames {
 
 // Whether the text begins as a manifest does: its header has one of the columns `file`, `id` or an option's name.
 bool LooksLikeManifest(std::string_view text, const ManifestNames& names);
+// Whether a column `file` stands between semicolons or tabs, as some spreadsheets write a list: ParseManifest says so.
+bool ListsFilesBetweenOthers(std::string_view text);
 
 // Files are relative to the manifest's folder, and a row may name several that are one measurement (list/series.h); an
 // id that is not given is the file as listed, or SeriesId, without its leading "../" or "/". Words of options stand in

@@ -10,6 +10,15 @@
 namespace lobefit {
 namespace {
 
+// Whether the text holds half a character: an escape can name one (U+D800 to U+DFFF), which the parser writes as bytes
+// that are no UTF-8.
+bool HoldsHalf(std::string_view text) {
+  for (std::size_t at = text.find('\xED'); at < text.size(); at = text.find('\xED', at + 1)) {
+    if (at + 1 < text.size() && static_cast<unsigned char>(text[at + 1]) >= 0xA0) return true;
+  }
+  return false;
+}
+
 // Members as the parser meets them, each a part of the text that it parses in place. False ends the parsing: of nested
 // values, and of what is no object.
 class MemberReader : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, MemberReader> {
@@ -23,12 +32,12 @@ class MemberReader : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Memb
     return Take({text, length}, FlatMember::Kind::kNumber);
   }
   bool String(const char* text, rapidjson::SizeType length, bool) {
-    return Take({text, length}, FlatMember::Kind::kString);
+    return !HoldsHalf({text, length}) && Take({text, length}, FlatMember::Kind::kString);
   }
   bool StartObject() { return !std::exchange(is_within_, true); }
   bool Key(const char* text, rapidjson::SizeType length, bool) {
     members_.emplace_back().name = {text, length};
-    return true;
+    return !HoldsHalf({text, length});
   }
   bool EndObject(rapidjson::SizeType) { return true; }
 
