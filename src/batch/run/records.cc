@@ -85,6 +85,7 @@ SegmentLines ParseLines(const std::filesystem::path& path, std::uint64_t begin, 
   SegmentLines parsed;
   LineReader lines(rest);
   std::string_view line;
+  bool is_first = true;
   while (offset + lines.offset() < end && lines.Next(&line)) {
     if (line.empty()) continue;
     const std::size_t known = parsed.done.size();
@@ -93,11 +94,15 @@ SegmentLines ParseLines(const std::filesystem::path& path, std::uint64_t begin, 
     } catch (const std::exception&) {
       ++parsed.lines_lost;
     }
+    const bool is_done = parsed.done.size() > known;
+    parsed.begins_with_done = parsed.begins_with_done || (is_first && is_done);
+    is_first = false;
     // Places count from the beginning of the piece.
-    if (parsed.done.size() == known) continue;
+    if (!is_done) continue;
     parsed.done.back().row_offset += offset;
     parsed.done.back().picture_offset += offset;
   }
+  parsed.picture_offset += offset;
   ForgetEnded(&parsed);
   return parsed;
 }
@@ -145,6 +150,12 @@ Records ReadRecords(const std::filesystem::path& out, int threads) {
       segment.host = parsed[i].writer.host;
       segment.is_running = IsRunning(parsed[i].writer);
     }
+    if (i > 0 && pieces[i - 1].segment == s && parsed[i].begins_with_done) {
+      const SegmentLines& before = parsed[i - 1];
+      DoneRecord& first = parsed[i].done.front();
+      first.picture_offset = before.picture_offset, first.picture_bytes = before.picture_bytes;
+      first.picture_is_measured = before.picture_is_measured;
+    }
     for (DoneRecord& done : parsed[i].done) {
       done.segment = s;
       records.done.push_back(std::move(done));
@@ -155,7 +166,8 @@ Records ReadRecords(const std::filesystem::path& out, int threads) {
       open[s][start.id] = std::move(start);
     }
     for (const std::string& id : parsed[i].ended) open[s].erase(id);
-    parsed[i] = {};
+    // But for the picture that may be the next piece's, its lines are no longer needed.
+    parsed[i].done = {}, parsed[i].started = {}, parsed[i].ended = {};
   }
   for (std::size_t s = 0; s < paths.size(); ++s) {
     if (records.segments[s].is_running) continue;

@@ -18,6 +18,8 @@ struct SegmentLines {
   std::vector<std::string> ended;  // ids of those that were begun here or in an earlier piece
   Writer writer;
   std::size_t lines_lost = 0;
+  // The first line is that of a task that is done: its picture may be the last line of the piece before.
+  bool begins_with_done = false;
   // Of the line before, which belongs to the next one.
   std::uint64_t picture_offset = 0, picture_bytes = 0;
   bool picture_is_measured = false;
