@@ -27,6 +27,8 @@ using ShownBrdf = std::function<bool(const Vec3& wi, const Vec3& wo, double* f_r
 
 // Towards the light; the viewer is at +z.
 Vec3 SphereLight();
+LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size);
+// The same of what was fitted, many pixels at once.
 LitSphere LightFitted(const FittedFunction& fitted, const ChannelColor& to_color, int size);
 // The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
 std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size);

@@ -85,23 +85,6 @@ Sphere Unlit(int size) {
   return {size, std::vector<Color>(pixels, Color{0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
 }
 
-Sphere LightSphere(const Brdf& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
-  Sphere sphere = Unlit(size);
-  LitRow lit;
-  std::vector<double> f_r(channels);
-  for (int row = 0; row < size; ++row) {
-    FindLit(row, size, &lit);
-    for (std::size_t i = 0; i < lit.pixel.size(); ++i) {
-      if (brdf(lit.wi(i), lit.wo(i), f_r.data())) {
-        lit.Light(i, to_color.Linear(f_r.data()), &sphere);
-      } else {
-        sphere.known[lit.pixel[i]] = 0;
-      }
-    }
-  }
-  return sphere;
-}
-
 Vec3 Sun() { return Normalized(Vec3{-0.45, 0.6, 0.75}); }
 
 // Radiance of the sky: bright horizon, blue zenith, dark ground, a broad glow around the sun.
@@ -180,6 +163,23 @@ void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
 }  // namespace
 
 Vec3 SphereLight() { return Normalized(Vec3{-0.45, 0.6, 0.75}); }
+
+LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
+  LitSphere sphere = Unlit(size);
+  LitRow lit;
+  std::vector<double> f_r(channels);
+  for (int row = 0; row < size; ++row) {
+    FindLit(row, size, &lit);
+    for (std::size_t i = 0; i < lit.pixel.size(); ++i) {
+      if (brdf(lit.wi(i), lit.wo(i), f_r.data())) {
+        lit.Light(i, to_color.Linear(f_r.data()), &sphere);
+      } else {
+        sphere.known[lit.pixel[i]] = 0;
+      }
+    }
+  }
+  return sphere;
+}
 
 LitSphere LightFitted(const FittedFunction& fitted, const ChannelColor& to_color, int size) {
   LitSphere sphere = Unlit(size);
