@@ -82,16 +82,6 @@ TEST(Ladder, WhatTheTruthNeedsIsFound) {
   }
 }
 
-// The index of a coat is one for all channels; the fit repeats the choice from its recipe as written.
-TEST(Ladder, ACoatOverThreeChannelsIsWrittenAndRead) {
-  SyntheticCase coat = OneLobe(Ndf::kGgx, 0.4, 0.4, 0, 0, 0, {0.6, 0.5, 0.4}, {0.1, 0.08, 0.05});
-  coat.model.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered});
-  coat.values.insert(coat.values.begin() + 6, {{0.1}, {0.1}, {0}, {0}, {0}, {1.8, 1.8, 1.8}, {0, 0, 0}});
-  const LadderChoice choice = ChoiceFor(coat, 7);
-  ASSERT_THAT(choice.recipe.name, testing::HasSubstr("+coat"));
-  EXPECT_NO_THROW(AsWritten(choice.recipe));
-}
-
 TEST(Ladder, NeverWorseThanOneLobeAndTheFirstOfTheTable) {
   for (const double alpha_y : {0.05, 0.2}) {
     const LadderChoice choice = ChoiceFor(Gray(Ndf::kGgxAnisotropic, 0.2, alpha_y), 3);
