@@ -363,9 +363,10 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
     ladder.Try(with, name, &ladder.Best());
     ladder.Try(alone, NameOfParts(alone));
   };
+  // What an interface throws back is no multiple of an albedo, which a free scale does not tell.
   Model interfaced = ladder.Best().recipe.model;
   interfaced.diffuse = Diffuse::kInterfaced;
-  add_part(interfaced, ladder.BestName() + "+interfaced", {{{shape}}, Diffuse::kInterfaced});
+  if (!simplest.free_scale) add_part(interfaced, ladder.BestName() + "+interfaced", {{{shape}}, Diffuse::kInterfaced});
   for (const bool retro : {true, false}) {
     Model more = ladder.Best().recipe.model;
     if (more.lobes.size() == kMostLobes || (!retro && (more.lobes.size() == 1 || spectrum))) continue;

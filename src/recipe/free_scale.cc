@@ -5,7 +5,11 @@
 namespace lobefit {
 namespace {
 
-bool IsReflectance(const Parameter& parameter) {
+// Light that is scattered more than once makes a diffuse part no multiple of its albedo, which stays at most 1.
+bool IsLinear(Diffuse diffuse) { return diffuse != Diffuse::kInterfaced && diffuse != Diffuse::kOrenNayar; }
+
+bool IsReflectance(const Model& model, const Parameter& parameter) {
+  if (parameter.group == ParameterGroup::kDiffuse && !IsLinear(model.diffuse)) return false;
   return parameter.group != ParameterGroup::kShape && parameter.free && parameter.low == 0 && !parameter.shared;
 }
 
@@ -14,7 +18,7 @@ bool IsReflectance(const Parameter& parameter) {
 void LiftReflectanceBounds(Recipe* recipe) {
   const std::vector<Parameter> parameters = Parameters(recipe->model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (!IsReflectance(parameters[i])) continue;
+    if (!IsReflectance(recipe->model, parameters[i])) continue;
     recipe->parameters[i].low = 0;
     recipe->parameters[i].high = 1e12;
   }
@@ -29,8 +33,10 @@ Recipe WithFreeScale(const Recipe& recipe) {
         "do not tell; leave the free scale out, or give the lobe another Fresnel term");
   }
   Recipe free = recipe;
+  if (!IsLinear(free.model.diffuse)) free.model.diffuse = Diffuse::kLambert;
   for (Lobe& lobe : free.model.lobes) {
-    lobe.fresnel = Fresnel::kNone;
+    // The coefficients of a free curve are factors already.
+    if (lobe.fresnel != Fresnel::kCurve) lobe.fresnel = Fresnel::kNone;
     lobe.metal.clear();
   }
   // What the recipe says of parameters that are still there.
@@ -40,7 +46,7 @@ Recipe WithFreeScale(const Recipe& recipe) {
     for (std::size_t k = 0; k < before.size(); ++k) {
       if (before[k].name == after[i].name && k < recipe.parameters.size()) free.parameters[i] = recipe.parameters[k];
     }
-    if (IsReflectance(after[i])) free.parameters[i].fixed.clear();
+    if (IsReflectance(free.model, after[i])) free.parameters[i].fixed.clear();
   }
   LiftReflectanceBounds(&free);
   free.free_scale = true;

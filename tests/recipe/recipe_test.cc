@@ -11,6 +11,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/text/text.h"
 #include "lobefit/math/vec.h"
+#include "lobefit/recipe/free_scale.h"
 
 namespace lobefit {
 namespace {
@@ -116,6 +117,26 @@ TEST(Recipe, AFreeScaleComesBackAndIsCheckedAgainstEnergy) {
   EXPECT_FALSE(ParseRecipe("scale = \"calibrated\"\n[[lobe]]\n", "c.toml").free_scale);
   EXPECT_THROW(ParseRecipe("scale = \"loose\"\n[[lobe]]\n", "c.toml"), InputError);
   EXPECT_THROW(ParseRecipe("scale = \"free\"\nenergy = \"conserving\"\n[[lobe]]\n", "c.toml"), InputError);
+}
+
+// What the automatic choice found under a free scale is what is fitted: a curve stays one, however high.
+TEST(Recipe, AFreeScaleKeepsCurvesAndMakesDiffusePartsLinear) {
+  const Recipe recipe =
+      ParseRecipe("scale = \"free\"\ndiffuse = \"interfaced\"\n[[lobe]]\nfresnel = \"curve\"\n", "a.toml");
+  EXPECT_EQ(recipe.model.lobes[0].fresnel, Fresnel::kCurve);
+  EXPECT_EQ(recipe.model.diffuse, Diffuse::kLambert);
+  const std::vector<Parameter> parameters = Parameters(recipe.model);
+  for (std::size_t i = FirstFresnel(recipe.model, 0); i < parameters.size(); ++i)
+    EXPECT_GE(recipe.parameters[i].high.value_or(parameters[i].high), 1e6) << parameters[i].name;
+  EXPECT_EQ(ToToml(ParseRecipe(ToToml(recipe), "b.toml")), ToToml(recipe));
+  // In the plane of incidence lobes have a free factor, but the albedo below an interface stays an albedo.
+  Recipe scaled = ParseRecipe("diffuse = \"interfaced\"\n[[lobe]]\nfresnel = \"none\"\n", "c.toml");
+  LiftReflectanceBounds(&scaled);
+  const std::vector<Parameter> of_scaled = Parameters(scaled.model);
+  for (std::size_t i = 0; i < of_scaled.size(); ++i) {
+    if (of_scaled[i].name != "diffuse") continue;
+    EXPECT_LE(scaled.parameters[i].high.value_or(of_scaled[i].high), 1);
+  }
 }
 
 TEST(Recipe, MetalsNeedAWavelengthAChannel) {

@@ -15,7 +15,7 @@ constexpr std::size_t kMiddle = 40000;
 // With more coordinates dense steps take longer than passes.
 constexpr std::size_t kMostDense = 200;
 // Passes by a stand-in, and steps.
-constexpr int kMostRounds = 20, kMostSteps = 100;
+constexpr int kMostPasses = 20, kMostSteps = 100;
 // Minima that go on to the next level: at most so many, and no worse than the best by this factor in cost.
 constexpr std::size_t kToMiddle = 6, kToAll = 2;
 constexpr double kWorse = 1.5, kWorseMiddle = 1.05;
@@ -88,7 +88,7 @@ void Refine(const Problem& problem, const Layout& layout, const Level& level, bo
         minimum.solution.iterations += so_far;
       };
       if (level.part != nullptr && layout.size() < kMostDense) {
-        finish.max_iterations = kMostRounds;
+        finish.max_iterations = kMostPasses;
         const int so_far = minimum.solution.iterations;
         minimum.solution = SolveByStandIn(problem, *level.part, layout, minimum.solution.u, finish, pool);
         minimum.solution.iterations += so_far;
