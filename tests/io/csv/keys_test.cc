@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "tests/io/csv/read_csv.h"
+#include <gmock/gmock.h>
 
 #include "lobefit/io/text/units.h"
 
@@ -166,6 +167,31 @@ TEST(CsvKeys, AnglesAndWavelengthsInPhrases) {
   // A list is no angle of the file.
   EXPECT_NE(MessageOf("# angle of incidence 10 20 30\ntheta_o,f\n45,2\n").find("'# theta_i: 30'"), std::string::npos);
   EXPECT_NE(MessageOf("# incident direction: 30, 90\ntheta_o,f\n45,2\n").find("'# theta_i: 30'"), std::string::npos);
+}
+
+// Titles mention it amid other words; that is said where it is used.
+TEST(CsvKeys, TheAngleOfIncidenceAmidATitle) {
+  for (const char* line :
+       {"BRDF at 30 deg incidence", "# BRDF measured at 30\u00b0 incidence angle", "Measured at AOI 30 degrees",
+        "30 deg angle of incidence", "Title: 30\u00b0 AOI", "# white tile, lit at an angle of incidence of 30 deg"}) {
+    const Measurement m = ReadText(std::string(line) + "\ntheta_o,f\n45,2\n");
+    ASSERT_EQ(m.samples.size(), 1U) << line;
+    ExpectSample(m, 0, 30, 0, 45, 180, 2);
+    EXPECT_THAT(m.remarks, testing::Contains(testing::HasSubstr("the angle of incidence is 30"))) << line;
+  }
+  for (const char* line : {"Sample A, theta_i = 30", "Sample: white tile; angle of incidence = 30.0 deg"})
+    ExpectSample(ReadText(std::string(line) + "\ntheta_o;f\n45;2\n"), 0, 30, 0, 45, 180, 2);
+  const Measurement blocks =
+      ReadText("BRDF at 10 deg incidence\ntheta_o,f\n45,1\nBRDF at 30 deg incidence\ntheta_o,f\n45,2\n");
+  ExpectSample(blocks, 1, 30, 0, 45, 180, 2);
+  // A column is what counts, and of several angles none is that of all rows.
+  const Measurement column = ReadText("# tile, 8 deg incidence in the sphere\ntheta_i,theta_o,f\n30,45,2\n");
+  ExpectSample(column, 0, 30, 0, 45, 180, 2);
+  EXPECT_THAT(column.remarks, testing::Not(testing::Contains(testing::HasSubstr("incidence is 8"))));
+  for (const char* line : {"BRDF at 0, 30 and 60 deg incidence", "scan from 10 to 60 deg incidence",
+                           "tile at 8 deg incidence, sample at 30 deg incidence", "detector at 30 deg"}) {
+    EXPECT_NE(MessageOf(std::string(line) + "\ntheta_o;f\n45;2\n").find("'# theta_i: 30'"), std::string::npos) << line;
+  }
 }
 
 TEST(CsvKeys, UnitsInLists) {

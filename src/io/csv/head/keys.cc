@@ -167,7 +167,8 @@ const FixedCoordinate* CsvKeys::Find(Coordinate coordinate) const {
 bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, CsvKeys* keys) {
   if (ReadConvention(line, text, keys)) return true;
   const std::size_t at = text.find_first_of(":=");
-  if (at == std::string_view::npos) return ReadSentence(text, keys) || ReadPhrase(text, keys);
+  if (at == std::string_view::npos)
+    return ReadSentence(text, keys) || ReadPhrase(text, keys) || ReadMention(text, keys);
   if (ReadCoordinates(text, keys)) return true;
   const std::string_view key = Trim(text.substr(0, at)), word = Trim(text.substr(at + 1));
   const std::string name = KeyName(key);
@@ -252,7 +253,8 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
     if (!ParseRepeatedRows(word))
       FailAtLine(file, line, "repeated is '" + Excerpt(word) + "'; allowed are first, mean");
     keys->repeated = std::string(word);
-  } else if (!ReadUnits(name, word, keys) && !ReadCoordinate(key, word, keys)) {
+  } else if (!ReadUnits(name, word, keys) && !ReadCoordinate(key, word, keys) && !ReadParts(text, keys) &&
+             !ReadMention(text, keys)) {
     // A misspelt key would leave the file read in the wrong unit without a word.
     const std::string suggestion = name.size() > 5 ? DidYouMean(name, KnownUnitKeys()) : "";
     if (!suggestion.empty()) FailAtLine(file, line, "the key '" + Excerpt(key) + "' is not known" + suggestion);
@@ -281,12 +283,15 @@ bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::str
                       (filled.size() > 1 && filled[1].find_first_of(":=") == 0);
   if (!marked) {
     if (filled.size() == 1 && ReadConvention(line, filled[0], keys)) return true;
-    if (filled.size() == 1) return ReadSentence(filled[0], keys) || ReadPhrase(filled[0], keys);
+    if (filled.size() == 1)
+      return ReadSentence(filled[0], keys) || ReadPhrase(filled[0], keys) || ReadMention(filled[0], keys);
     // "Scan 3, incidence 30 deg"
     for (const std::string_view field : filled) {
       if (ReadPhrase(field, keys)) return true;
     }
     text += ':';
+  } else if (filled.size() > 1 && ReadParts(Join({filled.begin(), filled.end()}, ";"), keys)) {
+    return true;
   }
   for (std::size_t i = 1; i < filled.size(); ++i) {
     text += ' ';

@@ -35,6 +35,7 @@ struct CsvKeys {
   StatedInstrument instrument;
   ViewerZero viewer_zero = ViewerZero::kNotSaid;
   std::vector<FixedCoordinate> fixed;  // each coordinate at most once
+  std::string mention_of_incidence;    // the line that theta_i is from, where it is no key (ReadMention)
   std::string lone_azimuth;            // "Azimuth: 90", whose it is not said
   std::string columns, where, no_value, exclude, value_column, repeated;
   std::vector<std::string> remarks;  // keys that resemble a known one

@@ -164,6 +164,66 @@ bool ReadSentence(std::string_view text, CsvKeys* keys) {
   return true;
 }
 
+bool ReadParts(std::string_view text, CsvKeys* keys) {
+  CsvKeys all = *keys;
+  bool any = false;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find_first_of(",;|", begin), text.size());
+    const std::string_view part = text.substr(begin, end - begin);
+    const std::size_t at = part.find_first_of(":=");
+    if (ParseQuantity(part)) return false;  // "incident direction: 30, 90" is a list
+    any = (at != std::string_view::npos && ReadCoordinate(Trim(part.substr(0, at)), Trim(part.substr(at + 1)), &all)) ||
+          any;
+    begin = end + 1;
+  }
+  if (any) *keys = std::move(all);
+  return any;
+}
+
+bool ReadMention(std::string_view text, CsvKeys* keys) {
+  constexpr std::size_t kMostWords = 12;  // more are a description
+  constexpr std::size_t kMostOfName = 3;  // "angle of incidence"
+  static constexpr std::array<std::string_view, 6> kLists = {"and", "to", "or", "-", "...", "from"};
+  static constexpr std::array<std::string_view, 6> kBetween = {"at", "of", "is", "=", "was", ":"};
+  const std::string lower = ToLower(text);
+  const std::vector<std::string_view> words = PlainWords(lower);
+  if (words.size() > kMostWords || (keys->Find(Coordinate::kThetaI) != nullptr && keys->mention_of_incidence.empty()))
+    return false;
+  std::optional<Quantity> angle;
+  std::size_t first = 0, behind = 0;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i].empty() || !(words[i].front() >= '-' && words[i].front() <= '9')) continue;
+    const std::optional<Quantity> quantity = ParseQuantity(words[i]);
+    if (!quantity) continue;
+    const bool apart = quantity->unit.empty() && i + 1 < words.size() && ParseAngleUnit(PlainUnit(words[i + 1]));
+    if (!apart && !ParseAngleUnit(quantity->unit)) continue;
+    // Of several angles none is that of all rows.
+    if (angle || (i > 0 && (HoldsWord(kLists, words[i - 1]) || ParseQuantity(words[i - 1])))) return false;
+    angle = Quantity{quantity->number, apart ? PlainUnit(words[i + 1]) : quantity->unit};
+    first = i;
+    behind = i + (apart ? 2 : 1);
+  }
+  if (!angle) return false;
+  while (first > 0 && HoldsWord(kBetween, words[first - 1])) --first;
+  const auto names_incidence = [&](std::size_t begin, std::size_t end) {
+    std::string name;
+    for (std::size_t i = begin; i < end; ++i) name += (name.empty() ? "" : " ") + std::string(words[i]);
+    const CsvColumn column = ClassifyColumn(name);
+    return column.role == ColumnRole::kCoordinate && column.coordinate == Coordinate::kThetaI &&
+           column.form == AngleForm::kPolar;
+  };
+  bool of_incidence = false;
+  for (std::size_t length = 1; length <= kMostOfName && !of_incidence; ++length) {
+    of_incidence = (behind + length <= words.size() && names_incidence(behind, behind + length)) ||
+                   (length <= first && names_incidence(first - length, first));
+  }
+  if (!of_incidence) return false;
+  keys->Fix({Coordinate::kThetaI, angle->number, ParseAngleUnit(angle->unit)});
+  keys->mention_of_incidence = text;
+  return true;
+}
+
 bool ReadUnits(const std::string& name, std::string_view word, CsvKeys* keys) {
   CsvKeys all = *keys;
   if (name == "units" || name == "unit") {

@@ -23,6 +23,11 @@ bool ReadCoordinate(std::string_view key, std::string_view word, CsvKeys* keys);
 bool ReadCoordinates(std::string_view text, CsvKeys* keys);
 // Without a mark between: "Laser wavelength 632.8 nm".
 bool ReadPhrase(std::string_view text, CsvKeys* keys);
+// Angles and wavelengths among other things: "Sample A, theta_i = 30", "white tile; AOI: 30 deg".
+bool ReadParts(std::string_view text, CsvKeys* keys);
+// One angle with its unit beside words for the angle of incidence, amid a title: "BRDF at 30 deg incidence". It gives way
+// to keys and columns, and is said where it is used.
+bool ReadMention(std::string_view text, CsvKeys* keys);
 // "All angles are in radians.", "BRDF values in %".
 bool ReadSentence(std::string_view text, CsvKeys* keys);
 // "Units: rad, 1/sr", "BRDF unit: %", "unit of theta_i: rad"; `name` is the key in small letters with hyphens.

@@ -287,6 +287,11 @@ class AngleFinder {
       if (directions.Has(fixed.coordinate)) continue;
       directions.Give(fixed.coordinate, Scale(fixed.coordinate, fixed.unit), fixed.form);
       layout_.fixed[static_cast<std::size_t>(fixed.coordinate)] = fixed.number;
+      const std::string& mention = header_.keys.mention_of_incidence;
+      if (fixed.coordinate == C::kThetaI && !mention.empty()) {
+        notes_.remarks.push_back("the angle of incidence is " + FormatDouble(fixed.number) + ", as the line '" +
+                                 Excerpt(mention, 60) + "' says");
+      }
     }
     if (directions.Has(C::kPhiO) && directions.Has(C::kDeltaPhi))
       Fail("both phi_o and dphi are given; remove one of them");
