@@ -252,6 +252,7 @@ class Ladder {
         SolveOptions finish;
         finish.function_tolerance = 1e-6;
         finish.max_iterations = 60;
+        finish.use_ceres = false;  // bounds hold many coordinates, and its factorisations take as long as the passes
         const Solution solution = Solve(training, layout, minima[0].solution.u, finish, &alone);
         std::vector<std::vector<double>> f_r;
         ModelValues(test.kernel_samples(), layout.ToKernel(solution.u.data()), 0, test.size(), &f_r);
