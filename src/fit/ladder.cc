@@ -30,7 +30,7 @@ constexpr std::size_t kSamples = 4000, kMostFolds = 4, kStarts = 4;
 // Wavelengths that a spectrum is judged by; the shape is that of all, and descents cost the square of their number.
 constexpr std::size_t kMostChannels = 5;
 constexpr std::size_t kMostLobes = 3;
-// A coat whose gain in the mean square on held-out directions is beyond chance.
+// A part whose gain in the mean square on held-out directions is beyond chance.
 constexpr double kMuch = 0.9;
 // Incident directions at which a model's albedo is looked at.
 constexpr std::size_t kIncidences = 6;
@@ -162,8 +162,8 @@ class Ladder {
   }
 
   // Without what says that the scale is free.
-  std::string BestName() const {
-    const std::string& name = Best().recipe.name;
+  std::string NameOf(const Rung& rung) const {
+    const std::string& name = rung.recipe.name;
     return scaled_ && name.ends_with("-scaled") ? name.substr(0, name.size() - 7) : name;
   }
 
@@ -367,19 +367,24 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   // What an interface throws back is no multiple of an albedo, which a free scale does not tell.
   Model interfaced = ladder.Best().recipe.model;
   interfaced.diffuse = Diffuse::kInterfaced;
-  if (!simplest.free_scale) add_part(interfaced, ladder.BestName() + "+interfaced", {{{shape}}, Diffuse::kInterfaced});
-  for (const bool retro : {true, false}) {
-    Model more = ladder.Best().recipe.model;
-    if (more.lobes.size() == kMostLobes || (!retro && (more.lobes.size() == 1 || spectrum))) continue;
-    Lobe lobe = {Ndf::kGgx, Masking::kSmithSeparable, retro ? Fresnel::kNone : more.lobes[0].fresnel};
-    if (retro) lobe.direction = LobeDirection::kRetro;
+  if (!simplest.free_scale)
+    add_part(interfaced, ladder.NameOf(ladder.Best()) + "+interfaced", {{{shape}}, Diffuse::kInterfaced});
+  const auto with_lobe = [](const Rung& rung, Lobe lobe) {
+    Model more = rung.recipe.model;
     more.lobes.push_back(lobe);
-    const std::string name = ladder.BestName() + (retro ? "+retro" : "+ggx");
-    if (retro) {
-      add_part(more, name, {{{shape}, lobe}, Diffuse::kLambert});
-    } else {
-      ladder.Try(more, name, &ladder.Best());
-    }
+    return more;
+  };
+  const Rung& before = ladder.Best();
+  Lobe back = {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kNone};
+  back.direction = LobeDirection::kRetro;
+  if (before.recipe.model.lobes.size() < kMostLobes)
+    add_part(with_lobe(before, back), ladder.NameOf(before) + "+retro", {{{shape}, back}, Diffuse::kLambert});
+  // A lobe about the back direction that gains little leaves its place to another.
+  const Rung& base = ladder.Best().mean() < kMuch * before.mean() ? ladder.Best() : before;
+  const std::size_t lobes = base.recipe.model.lobes.size();
+  if (lobes > 1 && lobes < kMostLobes && !spectrum) {
+    const Lobe third = {Ndf::kGgx, Masking::kSmithSeparable, base.recipe.model.lobes[0].fresnel};
+    ladder.Try(with_lobe(base, third), ladder.NameOf(base) + "+ggx", &base);
   }
   // Last, as a third lobe may do the same. Below a coat the diffuse part is Lambertian; a coat's reflectance is
   // calibrated, so that a free scale has none.

@@ -5,10 +5,11 @@
 // tilted); in the simplest shape that predicts as well as the best, its tail (Student's, a free profile) or a second
 // lobe; a profile, two lobes, two of Student's and two profiles with a free Fresnel curve; for the best so far a
 // diffuse part below an interface, then a lobe about the back direction (both over the one lobe too), then a third
-// lobe, then a coat. Chosen is the one with the fewest parameters of all that were tried whose held-out mean square
-// exceeds the least one by no more than one standard error of the difference over folds; of those, one that reflects no
-// more than it receives before one that does (EnergyBalance, for calibrated values). The work is done on a stratified
-// subsample in a few channels, each model's folds from its descent on the whole of it.
+// lobe (without one about the back direction that gains little), then a coat. Chosen is the one with the fewest
+// parameters of all that were tried whose held-out mean square exceeds the least one by no more than one standard error
+// of the difference over folds; of those, one that reflects no more than it receives before one that does
+// (EnergyBalance, for calibrated values). The work is done on a stratified subsample in a few channels, each model's
+// folds from its descent on the whole of it.
 #pragma once
 
 #include "lobefit/base/process/parallel.h"
