@@ -13,9 +13,9 @@ namespace lobefit {
 // The reader that recognises the bytes. Throws InputError that lists the known formats.
 const Format& RecogniseFormat(const InputFile& file);
 
-// Whether a file of a folder is meant: what some reader recognises, and of rows with separators, which any text may have,
-// those whose names hold directions, unless `any_rows` (--columns names them). True for a file that cannot be opened, so
-// that it is missed.
+// Whether a file of a folder is meant: what some reader recognises, and of rows with separators, which any text may
+// have, those whose names hold directions, unless `any_rows` (--columns names them). True for a file that cannot be
+// opened, so that it is missed.
 bool HoldsMeasurement(const std::filesystem::path& path, bool any_rows);
 
 // Reads, recognises and finishes a file. Throws InputError for a file that cannot be read, is not valid, or has no

@@ -44,8 +44,8 @@ std::string EncodePng(const cv::Mat& rgb, double pixels_per_inch) {
   // Figures are flat: the filter "up" with a low level is four times as fast as the default and about as small.
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
   png_set_compression_level(writer.png, 4);
-  // Of a small picture clearing zlib's memory would take longer than packing, and looking for more than runs takes twice
-  // the time for a fiftieth of the bytes.
+  // Of a small picture clearing zlib's memory would take longer than packing, and looking for more than runs takes
+  // twice the time for a fiftieth of the bytes.
   constexpr std::size_t kSmallPixels = 1 << 16;
   if (rgb.total() < kSmallPixels) {
     png_set_compression_mem_level(writer.png, 5);

@@ -157,8 +157,8 @@ TEST_F(TargetModel, MaterialX) {
       3e-3, 0.1);
 }
 
-// MaterialX' layer: the coat and, less its albedo seen from the viewer, what lies below, whose colours have the light's way
-// in at normal incidence and the absorption both ways.
+// MaterialX' layer: the coat and, less its albedo seen from the viewer, what lies below, whose colours have the light's
+// way in at normal incidence and the absorption both ways.
 TEST_F(TargetModel, MaterialXCoat) {
   SyntheticCase coated;
   coated.model.lobes = {{Ndf::kGgx}, {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered}};

@@ -15,8 +15,8 @@
 
 namespace lobefit {
 
-// A recipe file, a recipe of the library by its name ("ellipsoid"), or that of a *.material.json. Throws InputError that
-// lists the names.
+// A recipe file, a recipe of the library by its name ("ellipsoid"), or that of a *.material.json. Throws InputError
+// that lists the names.
 Recipe LoadRecipe(const std::string& name_or_path);
 
 // Single choices that override those of a recipe.

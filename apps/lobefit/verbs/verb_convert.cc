@@ -63,8 +63,7 @@ int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
     if (measurement.isotropic) {
       shown = fmt::format(
           "light from one azimuth stands for all: {} pairs of samples that an isotropic surface alone makes equal "
-          "differ "
-          "by {:.2g} % in the median",
+          "differ by {:.2g} % in the median",
           pairs.pairs, 100 * pairs.median);
     }
   }

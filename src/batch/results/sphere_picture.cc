@@ -41,8 +41,8 @@ Measurement NearLight(const Measurement& measurement) {
   return near;
 }
 
-// A channel on the screen without the last two bits, which are not seen in so small a picture, and would make it half as
-// long again: a page holds a thousand.
+// A channel on the screen without the last two bits, which are not seen in so small a picture, and would make it half
+// as long again: a page holds a thousand.
 class CoarseScreen {
  public:
   CoarseScreen() {

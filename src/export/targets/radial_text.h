@@ -18,8 +18,8 @@ struct PiecewisePolynomial {
 // ln of the density over GGX's with the same ellipse, in u = ln(1 + t), its mass included: exact.
 PiecewisePolynomial ProfileExcess(const Profile& profile);
 
-// M over GGX's M (profile_masking.h) in w = asinh(a), to 2e-7 of max(1, value), up to the last piece; beyond `end` it is
-// exp(tail[0] + tail[1] (w - end) + tail[2] exp(-2 w)), or nothing where it is below 1e-9 there.
+// M over GGX's M (profile_masking.h) in w = asinh(a), to 2e-7 of max(1, value), up to the last piece; beyond `end` it
+// is exp(tail[0] + tail[1] (w - end) + tail[2] exp(-2 w)), or nothing where it is below 1e-9 there.
 struct MaskingRatio {
   PiecewisePolynomial pieces;
   double end = 0;

@@ -1,5 +1,5 @@
-// The form of J^T J of many channels: coordinates of one channel (its F0, its albedo) meet those of another only through
-// the rest, the border (shapes, and values that channels share). Work and memory are linear in the channels.
+// The form of J^T J of many channels: coordinates of one channel (its F0, its albedo) meet those of another only
+// through the rest, the border (shapes, and values that channels share). Work and memory are linear in the channels.
 #pragma once
 
 #include <vector>

@@ -35,8 +35,8 @@ class Neighbourhood {
   double radius2_ = 0;
 };
 
-// Sorts by cost, drops those without a finite one and joins what is one minimum: of the same cost, and within the other's
-// neighbourhood. Two solutions of equal cost, such as mirror images, stay two.
+// Sorts by cost, drops those without a finite one and joins what is one minimum: of the same cost, and within the
+// other's neighbourhood. Two solutions of equal cost, such as mirror images, stay two.
 void JoinFoundAgain(const Problem& problem, const Layout& layout, ThreadPool* pool,
                     std::vector<DistinctMinimum>* minima);
 

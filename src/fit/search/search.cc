@@ -60,9 +60,9 @@ std::vector<DistinctMinimum> Descend(const Problem& problem, const Layout& layou
 
 // A level of more samples.
 struct Level {
-  std::size_t most;  // minima that go on, no worse than the best by this factor
-  double worse;
-  double tolerance;
+  std::size_t most;               // minima that go on
+  double worse;                   // and how much worse than the best they may be, as a factor of the cost
+  double tolerance;               // SolveOptions::function_tolerance, unless this is a trial
   const Problem* part = nullptr;  // the level before, where it can stand in for this one
 };
 

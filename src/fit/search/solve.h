@@ -30,8 +30,8 @@ struct Solution {
   std::string message;
 };
 
-// Descends from `start` (within the bounds) by Levenberg-Marquardt. Gains are left at those of the solution. A start whose cost is not finite comes back not
-// converged.
+// Descends from `start` (within the bounds) by Levenberg-Marquardt. Gains are left at those of the solution. A start
+// whose cost is not finite comes back not converged.
 Solution Solve(const Problem& problem, const Layout& layout, const std::vector<double>& start,
                const SolveOptions& options, ThreadPool* pool);
 

@@ -12,9 +12,9 @@
 namespace lobefit {
 
 // Three hemispheres seen from above (radius: polar angle): incident directions, outgoing directions, half vectors, with
-// the number of samples in each of 45 x 45 cells. What zones and marks left out (Measurement::left_out) stands in rings of
-// one colour a reason, with its number below. Isotropic measurements are turned so that the light stands at
-// azimuth 0. Throws InputError where there is no sample, OutputError where the file cannot be written.
+// the number of samples in each of 45 x 45 cells. What zones and marks left out (Measurement::left_out) stands in rings
+// of one colour a reason, with its number below. Isotropic measurements are turned so that the light stands at azimuth
+// 0. Throws InputError where there is no sample, OutputError where the file cannot be written.
 void WriteCoveragePng(const Measurement& measurement, const std::filesystem::path& path,
                       const ReportOptions& options = {});
 

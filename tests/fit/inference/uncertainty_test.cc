@@ -156,8 +156,8 @@ TEST_P(EveryResidual, ErrorsAreTheTextbooks) {
   recipe.metric = metric;
   recipe.noise = {0.01, 0.05};
   recipe.loss = loss;
-  // Tukey's, five times as wide: with many samples on its flank, one incidence has more curvature than all together, and
-  // CR2 is not defined.
+  // Tukey's, five times as wide: with many samples on its flank, one incidence has more curvature than all together,
+  // and CR2 is not defined.
   recipe.loss_scale = loss == Loss::kTukey ? 0.5 : 0.1;
   recipe.weighting = Weighting::kCells;
   for (std::size_t i = 0; i < samples.size(); ++i) {

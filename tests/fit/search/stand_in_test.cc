@@ -89,8 +89,8 @@ TEST(StandIn, HoldsTheBoundsAndAsksTheWholeWhetherItIsAMinimum) {
   EXPECT_FALSE(DescendByStandIn(whole, decay.Of(kStride, low, nullptr), kStride, start, once).converged);
 }
 
-// A part that knows nothing leaves the whole's own Gauss-Newton steps. From 2 those of the arc tangent lead further away
-// each time, unless they are damped.
+// A part that knows nothing leaves the whole's own Gauss-Newton steps. From 2 those of the arc tangent lead further
+// away each time, unless they are damped.
 TEST(StandIn, OneThatKnowsNothingIsDamped) {
   BoundedObjective whole;
   whole.low = Eigen::VectorXd::Constant(1, -100);

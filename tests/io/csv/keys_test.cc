@@ -188,8 +188,11 @@ TEST(CsvKeys, TheAngleOfIncidenceAmidATitle) {
   const Measurement column = ReadText("# tile, 8 deg incidence in the sphere\ntheta_i,theta_o,f\n30,45,2\n");
   ExpectSample(column, 0, 30, 0, 45, 180, 2);
   EXPECT_THAT(column.remarks, testing::Not(testing::Contains(testing::HasSubstr("incidence is 8"))));
-  for (const char* line : {"BRDF at 0, 30 and 60 deg incidence", "scan from 10 to 60 deg incidence",
-                           "tile at 8 deg incidence, sample at 30 deg incidence", "detector at 30 deg"}) {
+  for (const char* line :
+       {"BRDF at 0, 30 and 60 deg incidence", "scan from 10 to 60 deg incidence",
+        "tile at 8 deg incidence, sample at 30 deg incidence", "detector at 30 deg",
+        "detector step 0.5 deg, incidence fixed", "tilted 2 deg from incidence plane", "2 deg incidence plane",
+        "resolution 0.1 deg (theta_i, theta_o)", "half angle of the source 1.5 deg at incidence"}) {
     EXPECT_NE(MessageOf(std::string(line) + "\ntheta_o;f\n45;2\n").find("'# theta_i: 30'"), std::string::npos) << line;
   }
 }

@@ -183,11 +183,16 @@ bool ReadParts(std::string_view text, CsvKeys* keys) {
 
 bool ReadMention(std::string_view text, CsvKeys* keys) {
   constexpr std::size_t kMostWords = 12;  // more are a description
-  constexpr std::size_t kMostOfName = 3;  // "angle of incidence"
-  static constexpr std::array<std::string_view, 6> kLists = {"and", "to", "or", "-", "...", "from"};
+  constexpr std::size_t kMostOfName = 3;
+  static constexpr std::array<std::string_view, 10> kNames = {
+      "incidence", "incidence angle", "incident angle", "angle of incidence", "aoi",
+      "theta_i",   "thetai",          "theta_in",       "einfallswinkel",     "einfall"};
+  static constexpr std::array<std::string_view, 6> kLists = {"and", "to", "or", "-", "from", "by"};
   static constexpr std::array<std::string_view, 6> kBetween = {"at", "of", "is", "=", "was", ":"};
+  // "the plane of incidence" and the like are no angle.
+  static constexpr std::array<std::string_view, 4> kOthers = {"plane", "port", "step", "steps"};
   const std::string lower = ToLower(text);
-  const std::vector<std::string_view> words = PlainWords(lower);
+  const std::vector<std::string_view> raw = SplitBlanks(lower), words = PlainWords(lower);
   if (words.size() > kMostWords || (keys->Find(Coordinate::kThetaI) != nullptr && keys->mention_of_incidence.empty()))
     return false;
   std::optional<Quantity> angle;
@@ -206,17 +211,24 @@ bool ReadMention(std::string_view text, CsvKeys* keys) {
   }
   if (!angle) return false;
   while (first > 0 && HoldsWord(kBetween, words[first - 1])) --first;
+  // A comma or a bracket parts what stands before it from what follows.
+  const auto is_one = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i + 1 < end; ++i) {
+      if (raw[i].ends_with(',') || raw[i].ends_with(';') || raw[i].ends_with(')') || raw[i + 1].starts_with('('))
+        return false;
+    }
+    return true;
+  };
   const auto names_incidence = [&](std::size_t begin, std::size_t end) {
     std::string name;
     for (std::size_t i = begin; i < end; ++i) name += (name.empty() ? "" : " ") + std::string(words[i]);
-    const CsvColumn column = ClassifyColumn(name);
-    return column.role == ColumnRole::kCoordinate && column.coordinate == Coordinate::kThetaI &&
-           column.form == AngleForm::kPolar;
+    return HoldsWord(kNames, name) && !(end < words.size() && HoldsWord(kOthers, words[end]));
   };
   bool of_incidence = false;
   for (std::size_t length = 1; length <= kMostOfName && !of_incidence; ++length) {
-    of_incidence = (behind + length <= words.size() && names_incidence(behind, behind + length)) ||
-                   (length <= first && names_incidence(first - length, first));
+    of_incidence = (behind + length <= words.size() && names_incidence(behind, behind + length) &&
+                    is_one(behind - 1, behind + length)) ||
+                   (length <= first && names_incidence(first - length, first) && is_one(first - length, behind));
   }
   if (!of_incidence) return false;
   keys->Fix({Coordinate::kThetaI, angle->number, ParseAngleUnit(angle->unit)});

@@ -25,8 +25,8 @@ bool ReadCoordinates(std::string_view text, CsvKeys* keys);
 bool ReadPhrase(std::string_view text, CsvKeys* keys);
 // Angles and wavelengths among other things: "Sample A, theta_i = 30", "white tile; AOI: 30 deg".
 bool ReadParts(std::string_view text, CsvKeys* keys);
-// One angle with its unit beside words for the angle of incidence, amid a title: "BRDF at 30 deg incidence". It gives way
-// to keys and columns, and is said where it is used.
+// One angle with its unit beside words for the angle of incidence, amid a title: "BRDF at 30 deg incidence". It gives
+// way to keys and columns, and is said where it is used.
 bool ReadMention(std::string_view text, CsvKeys* keys);
 // "All angles are in radians.", "BRDF values in %".
 bool ReadSentence(std::string_view text, CsvKeys* keys);
