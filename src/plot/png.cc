@@ -41,9 +41,10 @@ std::string EncodePng(const cv::Mat& rgb, double pixels_per_inch) {
   png_set_write_fn(writer.png, &bytes, OnWrite, OnFlush);
   png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(rgb.cols), static_cast<png_uint_32>(rgb.rows), 8,
                PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  // Figures are flat: the filter "up" with a low level is four times as fast as the default and about as small.
+  // Figures are flat: the filter "up" serves, and the lowest level. Level 4 takes twice as long (of a report's 14
+  // megapixels 0.24 s, not 0.11 s) and saves an eighth of its 2.8 MB.
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
-  png_set_compression_level(writer.png, 4);
+  png_set_compression_level(writer.png, 1);
   // Of a small picture clearing zlib's memory would take longer than packing, and looking for more than runs takes
   // twice the time for a fiftieth of the bytes.
   constexpr std::size_t kSmallPixels = 1 << 16;

@@ -98,21 +98,15 @@ void Run(Ndf ndf, std::size_t lobes, const std::vector<std::string>& files) {
           Fit(RecipeOf(ndf, lobes, MetricChoices()[k / weightings].value, WeightingChoices()[k % weightings].value),
               options, &measurement);
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const Reflectance fitted(material.model, material.Values(), 3);
+      const FittedFunction fitted(material);
       const SlopeCoordinates lobe = fitted.lobe_shapes()[0];
       // The directions of the light are those of the first fit, so that all fits are compared on the same picture.
       static SlopeCoordinates first;
       if (k == 0) {
         first = lobe;
-        reference =
-            Render([&](const Vec3& wi, const Vec3& wo, double* f) { return lookup.Find(wi, wo, f); }, first, to_color);
+        reference = Render(Shown(lookup, 3), first, to_color);
       }
-      const Look look = Render(
-          [&](const Vec3& wi, const Vec3& wo, double* f) {
-            fitted.Evaluate(wi, wo, f);
-            return true;
-          },
-          first, to_color);
+      const Look look = Render(Shown(fitted), first, to_color);
       const auto [psnr_light, color_light] = Compare(reference.light, look.light);
       const auto [psnr_sky, color_sky] = Compare(reference.sky, look.sky);
       all[k].push_back({psnr_light, psnr_sky, color_light, color_sky, seconds,

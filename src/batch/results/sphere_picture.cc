@@ -91,7 +91,7 @@ SpherePicture DrawSpheres(const Material& material, const Measurement& measureme
   if (material.sel) return {};
   const FittedFunction function(material);
   const ChannelColor to_color(measurement.channels);
-  const LitSphere fitted = LightFitted(function, to_color, kSize);
+  const LitSphere fitted = LightSphere(Shown(function), to_color, function.channels(), kSize);
   std::optional<LitSphere> measured;
   if (measurement.isotropic) measured = LightMeasured(NearLight(measurement), to_color, kSize);
   const double exposure = SphereExposure(measured ? *measured : fitted);

@@ -101,18 +101,28 @@ void Reflectance::Evaluate(const DirectionArrays& directions, std::vector<std::v
   }
   std::vector<double> facets(count, unit_diffuse_);
   if (facets_) facets_->Evaluate(directions, facets.data(), nullptr);
-  f_r->assign(channels_, std::vector<double>(count));
-  std::vector<double> s(lobes), d(lobes);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t lobe = 0; lobe < lobes; ++lobe) {
-      s[lobe] = specular[lobe][i];
-      d[lobe] = cos_d[lobe][i];
+  // In the order of Channel, a lobe of all directions at a time.
+  f_r->resize(channels_);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    std::vector<double>& sum = (*f_r)[c];
+    sum.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      sum[i] = directional_.empty()
+                   ? albedo_[c] * facets[i]
+                   : directional_[c].Evaluate({directions.wi_x[i], directions.wi_y[i], directions.wi_z[i]},
+                                              {directions.wo_x[i], directions.wo_y[i], directions.wo_z[i]}, nullptr);
     }
-    const Vec3 wi = {directions.wi_x[i], directions.wi_y[i], directions.wi_z[i]};
-    const Vec3 wo = {directions.wo_x[i], directions.wo_y[i], directions.wo_z[i]};
-    const CoatPassage* passage = HasCoat() ? &passages[i] : nullptr;
-    for (std::size_t c = 0; c < channels_; ++c)
-      (*f_r)[c][i] = Channel(c, s.data(), d.data(), DiffusePart(c, wi, wo, facets[i]), passage);
+    const auto factor = [&](std::size_t lobe, std::size_t i) {
+      return specular[lobe][i] *
+             FresnelFactor(model_.lobes[lobe].fresnel, fresnel_[lobe][c].data(), cos_d[lobe][i], nullptr);
+    };
+    for (std::size_t lobe = 0; lobe < lobes; ++lobe) {
+      for (std::size_t i = 0; lobe != coat_ && i < count; ++i) sum[i] += factor(lobe, i);
+    }
+    for (std::size_t i = 0; HasCoat() && i < count; ++i) {
+      const double through = passages[i].clear * std::exp(-fresnel_[coat_][c][1] * passages[i].path);
+      sum[i] = factor(coat_, i) + through * sum[i];
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-// Spheres under one light from the upper left, as report and page draw them.
+// Spheres under one light from the upper left and under a sky, as report and page draw them.
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/plot/color.h"
 #include "lobefit/report/figures/fitted_function.h"
+#include "lobefit/report/panels/isotropic_lookup.h"
 
 namespace lobefit {
 
@@ -22,14 +23,21 @@ struct LitSphere {
   std::vector<std::uint8_t> known;
 };
 
-// f_r of one pair of directions; false where it is not known.
-using ShownBrdf = std::function<bool(const Vec3& wi, const Vec3& wo, double* f_r)>;
+// f_r[c][i] of directions above the horizon; known[i] == 0 where it is not known.
+using ShownBrdf = std::function<void(const DirectionArrays& directions, std::vector<std::vector<double>>* f_r,
+                                     std::vector<std::uint8_t>* known)>;
+// They refer to what they show.
+ShownBrdf Shown(const FittedFunction& fitted);
+ShownBrdf Shown(const IsotropicLookup& lookup, std::size_t channels);
+
+// Black, all known.
+LitSphere DarkSphere(int size);
+// Whether nearly all of the sphere is known.
+bool IsCovered(const LitSphere& sphere);
 
 // Towards the light; the viewer is at +z.
 Vec3 SphereLight();
 LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size);
-// The same of what was fitted, many pixels at once.
-LitSphere LightFitted(const FittedFunction& fitted, const ChannelColor& to_color, int size);
 // The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
 std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size);
 

@@ -145,7 +145,8 @@ Json ParametersJson(const ReportData& data) {
     if (parameter.group == ParameterGroup::kDiffuse && !parameter.shared) high = std::max(1.0, 1.5 * most);
     const bool is_shape = parameter.group == ParameterGroup::kShape;
     if (is_shape && parameter.low < 0 && parameter.unit == "1") high = std::min(high, std::max(4.0, 1.5 * most));
-    if (parameter.name.ends_with("gamma")) logarithmic = true;
+    if (parameter.name.ends_with("gamma") || parameter.name == "g" || parameter.name.ends_with(".g"))
+      logarithmic = true;
     list.push_back({{"name", parameter.name},
                     {"symbol", Symbol(parameter)},
                     {"lobe", LobeOf(parameter)},
@@ -196,7 +197,10 @@ Json LobesJson(const Model& model) {
   Json lobes = Json::array();
   for (std::size_t l = 0; l < model.lobes.size(); ++l) {
     const Lobe& lobe = model.lobes[l];
-    lobes.push_back({{"family", FamilyOf(lobe.ndf) == Family::kBeckmann ? 1 : 0},
+    const Family family = FamilyOf(lobe.ndf);
+    lobes.push_back({{"family", family == Family::kAbg        ? 2
+                                : family == Family::kBeckmann ? 1
+                                                              : 0},
                      {"round", IsRound(lobe.ndf)},
                      {"retro", lobe.direction == LobeDirection::kRetro},
                      {"shapeParameters", ShapeParameters(lobe)},
@@ -224,16 +228,17 @@ std::string DataJson(const ReportData& data) {
     unit[c] = 1;
     rgb.push_back(List(to_color.Linear(unit.data()), [](double v) { return Rounded(v, 12); }));
   }
-  const Json json = {{"channels", data.channel_names},
-                     {"colors", List(data.channel_colors, HexColor)},
-                     {"dark", List(data.channel_colors, [&](Rgb c) { return HexColor(darker(c)); })},
-                     {"shown", data.shown_channels},
-                     {"rgb", rgb},
-                     {"model", {{"diffuse", DiffuseNumber(model.diffuse)}, {"lobes", LobesJson(model)}}},
-                     {"parameters", ParametersJson(data)},
-                     {"slices", SlicesJson(data)},
-                     {"table", data.measurement.isotropic ? TableJson(data, to_color) : Json(nullptr)},
-                     {"exposure", Rounded(SphereExposure(LightFitted(data.fitted, to_color, 128)), 12)}};
+  const Json json = {
+      {"channels", data.channel_names},
+      {"colors", List(data.channel_colors, HexColor)},
+      {"dark", List(data.channel_colors, [&](Rgb c) { return HexColor(darker(c)); })},
+      {"shown", data.shown_channels},
+      {"rgb", rgb},
+      {"model", {{"diffuse", DiffuseNumber(model.diffuse)}, {"lobes", LobesJson(model)}}},
+      {"parameters", ParametersJson(data)},
+      {"slices", SlicesJson(data)},
+      {"table", data.measurement.isotropic ? TableJson(data, to_color) : Json(nullptr)},
+      {"exposure", Rounded(SphereExposure(LightSphere(Shown(data.fitted), to_color, data.channels(), 128)), 12)}};
   // Within a <script> element only '<' could end it; JSON has it in strings alone.
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
   for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);

@@ -1,0 +1,149 @@
+// A sphere under an analytic sky: one set of directions of light for all pixels.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lobefit/base/process/parallel.h"
+#include "lobefit/core/ndf/slope_ndf.h"
+#include "lobefit/math/directions.h"
+#include "lobefit/report/figures/field_image.h"
+#include "lobefit/report/panels/sphere.h"
+#include "lobefit/report/panels/sphere_frame.h"
+
+namespace lobefit {
+namespace {
+
+constexpr int kSkySize = 104;
+constexpr double kGlow = 24;       // sharpness of the glow around the sun
+constexpr double kLowest = 0.001;  // cosine of light that is taken
+
+using Color = std::array<double, 3>;
+
+Vec3 Sun() { return SphereLight(); }
+
+double GlowAt(const Vec3& w) { return std::exp(kGlow * (Dot(w, Sun()) - 1)); }
+
+// Radiance of the sky: bright horizon, blue zenith, dark ground, a broad glow around the sun.
+Color Sky(const Vec3& w, double glow, bool grey) {
+  const double up = w.y, t = std::clamp(up, 0.0, 1.0), blend = 1 / (1 + std::exp(-up * 24));
+  const Color zenith = {0.30, 0.50, 0.95}, horizon = {1.0, 0.97, 0.92}, ground = {0.16, 0.14, 0.12};
+  Color color;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double above = horizon[k] + (zenith[k] - horizon[k]) * std::sqrt(t);
+    color[k] = ground[k] + (above - ground[k]) * blend + 5 * glow * (k == 2 ? 0.85 : 1.0);
+  }
+  if (grey) color.fill(0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]);
+  return color;
+}
+
+// The points of all pixels: the sky is smooth, and spheres that are compared see the same directions.
+struct SkyPoints {
+  struct Glowing {
+    Vec3 world;
+    double glow;
+    Color radiance;
+  };
+  std::vector<Vec3> facets;      // of the lobe, in the pixel's frame
+  std::vector<Vec3> cosine;      // in the pixel's frame
+  std::vector<Glowing> glowing;  // by exp(kGlow (cos - 1)) around the sun
+
+  SkyPoints(const SlopeFrame& lobe, int count, double glow_end, bool grey) {
+    const Vec3 sun = Sun(), sun_x = Normalized(Cross(Vec3{0, 0, 1}, sun)), sun_y = Cross(sun, sun_x);
+    for (int i = 0; i < count; ++i) {
+      const double u = (i / 3 + 0.5) / (count / 3.0),
+                   phi = 2 * kPi * std::fmod(0.5 + 0.6180339887498949 * (i / 3), 1.0);
+      if (i % 3 == 0) {
+        const double rho = std::sqrt(u / (1 - u));
+        const double x = lobe.slope_x + lobe.a * rho * std::cos(phi),
+                     y = lobe.slope_y + lobe.b * rho * std::cos(phi) + lobe.c * rho * std::sin(phi);
+        facets.push_back(Normalized(Vec3{-x, -y, 1.0}));
+      } else if (i % 3 == 1) {
+        const double r = std::sqrt(u);
+        cosine.push_back({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)});
+      } else {
+        const double along = 1 + std::log(1 - u * (1 - glow_end)) / kGlow, across = std::sqrt(1 - along * along);
+        const Vec3 world = along * sun + across * (std::cos(phi) * sun_x + std::sin(phi) * sun_y);
+        const double glow = GlowAt(world);
+        glowing.push_back({world, glow, Sky(world, glow, grey)});
+      }
+    }
+  }
+};
+
+// What reaches one pixel.
+struct Arriving {
+  std::array<std::vector<double>, 6> d;  // wi.x ... wo.z
+  std::vector<double> weight;            // wi.z over the density of the points there
+  std::vector<Color> radiance;
+  std::size_t size() const { return weight.size(); }
+  DirectionArrays arrays() const {
+    return {d[0].data(), d[1].data(), d[2].data(), d[3].data(), d[4].data(), d[5].data(), size()};
+  }
+};
+
+}  // namespace
+
+LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& coordinates, const ChannelColor& to_color,
+                    std::size_t channels, int count, int threads) {
+  const SlopeFrame lobe(coordinates);
+  const bool grey = channels < 3;
+  const double glow_end = std::exp(-2 * kGlow), glow_density = kGlow / (2 * kPi * (1 - glow_end));
+  const SkyPoints points(lobe, count, glow_end, grey);
+  LitSphere sphere = DarkSphere(kSkySize);
+  ParallelFor(kSkySize, threads, [&](std::size_t row) {
+    std::vector<double> values(channels);
+    std::vector<std::vector<double>> f_r;
+    std::vector<std::uint8_t> known;
+    Arriving arriving;
+    for (int column = 0; column < kSkySize; ++column) {
+      PointFrame frame;
+      if (!FrameOfPixel(column, static_cast<int>(row), kSkySize, &frame)) continue;
+      const Vec3 wo = frame.ToLocal({0, 0, 1});
+      for (std::vector<double>& component : arriving.d) component.clear();
+      arriving.weight.clear();
+      arriving.radiance.clear();
+      const auto add = [&](const Vec3& wi, double glow, const Color& radiance) {
+        // D(h) h.z / (4 wo.h) of the lobe by the unnormalised half vector (slope_ndf.h).
+        const Vec3 sum = wi + wo;
+        const double y1 = (-sum.x - sum.z * lobe.slope_x) / lobe.a,
+                     y2 = (-sum.y - sum.z * lobe.slope_y - lobe.b * y1) / lobe.c;
+        const double t = sum.z * sum.z + y1 * y1 + y2 * y2;
+        const double of_lobe = Dot(sum, sum) * sum.z / (2 * kPi * lobe.a * lobe.c * t * t);
+        arriving.weight.push_back(wi.z / ((of_lobe + wi.z * kInvPi + glow_density * glow) * (count / 3.0)));
+        arriving.radiance.push_back(radiance);
+        const double all[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
+        for (std::size_t j = 0; j < 6; ++j) arriving.d[j].push_back(all[j]);
+      };
+      const auto add_local = [&](const Vec3& wi) {
+        if (wi.z <= kLowest) return;
+        const Vec3 world = frame.ToWorld(wi);
+        const double glow = GlowAt(world);
+        add(wi, glow, Sky(world, glow, grey));
+      };
+      for (const Vec3& facet : points.facets) add_local(Reflect(wo, facet));
+      for (const Vec3& wi : points.cosine) add_local(wi);
+      for (const SkyPoints::Glowing& point : points.glowing) {
+        const Vec3 wi = frame.ToLocal(point.world);
+        if (wi.z > kLowest) add(wi, point.glow, point.radiance);
+      }
+      brdf(arriving.arrays(), &f_r, &known);
+      const std::size_t pixel = PixelIndex(column, static_cast<int>(row), kSkySize);
+      std::size_t unknown = 0;
+      Color sum = {0, 0, 0};
+      for (std::size_t i = 0; i < arriving.size(); ++i) {
+        if (known[i] == 0) {
+          ++unknown;
+          continue;
+        }
+        for (std::size_t c = 0; c < channels; ++c) values[c] = f_r[c][i];
+        const Color color = to_color.Linear(values.data());
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += color[k] * arriving.radiance[i][k] * arriving.weight[i];
+      }
+      sphere.color[pixel] = sum;
+      sphere.known[pixel] = 4 * unknown <= arriving.size() ? 1 : 0;
+    }
+  });
+  return sphere;
+}
+
+}  // namespace lobefit
