@@ -91,6 +91,18 @@ TEST(Fit, EachParameterSaysWhetherItStandsAtABound) {
   EXPECT_FALSE(bounded.parameters[6].at_bound);
 }
 
+// Factors may be up to 1e6, so that a small one is no hundred-millionth of the range away from 0.
+TEST(Fit, ASmallFactorIsNotAtItsBound) {
+  SyntheticCase truth = OneLobe(Ndf::kGgx, 0.1, 0.1, 0, 0, 0, {2e-4}, {0.1});
+  truth.model.lobes[0].fresnel = Fresnel::kNone;
+  Measurement measurement = Synthetic(truth, StandardLayout(), 0.01, 1);
+  const Material material = Fit(DefaultRecipe(truth.model, "scale"), {}, &measurement);
+  const FittedParameter& scale = material.parameters[5];
+  EXPECT_FALSE(scale.at_bound);
+  EXPECT_NEAR(scale.values[0], 2e-4, 4 * scale.standard_error[0]);
+  EXPECT_LT(scale.standard_error[0], 2e-5);
+}
+
 TEST(Fit, SameBitsOnOneAndEightThreads) {
   Material materials[2];
   for (int k = 0; k < 2; ++k) {

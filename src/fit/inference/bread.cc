@@ -132,7 +132,7 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
   const double cost = Linearise(problem, layout, u.data(), pool, &a, &gradient, &links);
   for (std::size_t i = 0; i < layout.size(); ++i) {
     const Coordinate& coordinate = layout.coordinates()[i];
-    const double slack = 1e-9 * (coordinate.high - coordinate.low);
+    const double slack = BoundSlack(coordinate);
     const double slope = gradient(static_cast<Eigen::Index>(i));
     bread.at_bound.push_back((u[i] <= coordinate.low + slack && slope >= 0) ||
                              (u[i] >= coordinate.high - slack && slope <= 0));

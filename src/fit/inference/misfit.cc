@@ -96,7 +96,7 @@ std::vector<int> FreeCoordinates(const Layout& layout, const std::vector<double>
   *count = 0;
   for (std::size_t i = 0; i < layout.size(); ++i) {
     const Coordinate& coordinate = layout.coordinates()[i];
-    const double slack = 1e-9 * (coordinate.high - coordinate.low);
+    const double slack = BoundSlack(coordinate);
     if (u[i] > coordinate.low + slack && u[i] < coordinate.high - slack) place[i] = static_cast<int>((*count)++);
   }
   return place;

@@ -6,6 +6,7 @@
 // for all.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,12 @@ struct Coordinate {
   // observation; else it is a preference, and says nothing of the error.
   bool observed = false;
 };
+
+// How near a bound a coordinate lies on it: solvers end there to rounding. Of wide ranges that of amplitudes (factors up
+// to 1e6) is no measure: the scatter of a mirror has a factor of 1e-5.
+inline double BoundSlack(const Coordinate& coordinate) {
+  return 1e-9 * std::min(1.0, coordinate.high - coordinate.low);
+}
 
 class Layout {
  public:
@@ -120,7 +127,9 @@ class Layout {
   void AddMean(std::size_t lobe, Shape* shape);
   // Parameters of the profile at `u`, and where asked d(parameter) / d(coordinate) of the free ones.
   std::vector<double> ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes = nullptr) const;
-  bool IsGamma(std::size_t lobe) const { return FamilyOf(recipe_.model.lobes[lobe].ndf) == Family::kStudent; }
+  // Of lobes with an exponent, whose coordinate is the logarithm of what it has above this.
+  bool IsExponent(std::size_t lobe) const { return HasExponent(recipe_.model.lobes[lobe].ndf); }
+  double LeastExponent(std::size_t lobe) const;
   void AddAngles();
   void AddHalfAngles();
   // Sets the lobes' rules at `u` and those of the half angles' columns, where there are such.
