@@ -13,8 +13,10 @@ std::size_t LobeOf(const Parameter& parameter) {
 }
 
 std::string Symbol(const Parameter& parameter) {
-  static const std::map<std::string, std::string> symbols = {{"alpha_x", "α_x"}, {"alpha_y", "α_y"}, {"theta_x", "θ_x"},
-                                                             {"theta_y", "θ_y"}, {"theta_z", "θ_z"}, {"f0", "F_0"}};
+  static const std::map<std::string, std::string> symbols = {
+      {"alpha_x", "α_x"}, {"alpha_y", "α_y"},     {"theta_x", "θ_x"},
+      {"theta_y", "θ_y"}, {"theta_z", "θ_z"},     {"f0", "F_0"},
+      {"ior", "n"},       {"interface_ior", "n"}, {"diffuse_roughness", "roughness"}};
   const std::size_t dot = parameter.name.find('.');
   const std::string name = dot == std::string::npos ? parameter.name : parameter.name.substr(dot + 1);
   const auto found = symbols.find(name);

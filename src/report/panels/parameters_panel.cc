@@ -155,7 +155,7 @@ double DrawTable(const ReportData& data, Canvas* canvas, const Box& box) {
       if (canvas == nullptr) continue;
       TextStyle name = style::Body(fitted.free ? style::kInk : style::kFaint);
       name.markup = true;
-      if (i == 0) canvas->Text({box.x, y}, Symbol(parameter), name);
+      if (i == 0) canvas->Text({box.x, y}, canvas->Shorten(Symbol(parameter), name, (kName - 0.015) * box.width), name);
       if (parameter.per_channel && rows > 1) {
         canvas->Disc({box.x + kName * box.width, y - 4.5}, 3.5, data.channel_colors[i]);
         canvas->Text({box.x + 0.185 * box.width, y},

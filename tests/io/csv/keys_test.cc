@@ -63,6 +63,8 @@ TEST(CsvKeys, WhatResemblesAKeyIsSaid) {
   }
   EXPECT_TRUE(HasRemark(ReadText("# unit for all of the angles: rad\n" + kRows), "is not known and was not used"));
   EXPECT_TRUE(HasRemark(ReadText("# light convention: away\n" + kRows), "is not known and was not used"));
+  // Synthetic files say the truth, which no reader takes for a unit.
+  EXPECT_FALSE(HasRemark(ReadText("# truth, scale = 0.5\n" + kRows), "is not known"));
   EXPECT_TRUE(ReadText("# made by: N.N.\n# lobefit.alpha_x: 0.1\n# https://example.org/a-b\n" + kRows).remarks.empty());
 }
 

@@ -121,6 +121,7 @@ const std::vector<std::string>& KnownChoiceKeys() {
 void RemarkOnUnused(std::size_t line, std::string_view key, const std::string& name, std::string_view word,
                     CsvKeys* keys) {
   if (name.empty() || name.size() > 30 || Trim(word).empty() || key == "comment") return;
+  if (key.starts_with("truth, ")) return;  // of synth, whose materials have a scale
   const ColumnRole role = ClassifyColumn(key).role;
   if (role == ColumnRole::kPolarisation && !IsUnpolarised(ToLower(word))) {
     keys->remarks.push_back("line " + std::to_string(line) + ": the polarisation is '" + Excerpt(word, 40) +
