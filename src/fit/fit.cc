@@ -454,6 +454,9 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
     material.energy = BalanceAt(SpreadIncidences(incidences, recipe.theta_max), recipe.model, material.Values(),
                                 material.channels, &pool);
     JudgeEnergy(*material.energy, &*material.verdict);
+    constexpr std::size_t kShown = 8;
+    material.scatter = ScatterOfAbg(SpreadIncidences(incidences, recipe.theta_max, kShown), recipe.model,
+                                    material.Values(), material.channels.size());
   }
   material.termination = {best.converged,
                           DeterminedButForCurves(uncertainty, layout) && !has_rival && !(explained < kLeastExplained),

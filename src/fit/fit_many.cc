@@ -122,7 +122,7 @@ std::vector<SmallFit> FitMany(const Recipe& recipe, const std::vector<const Samp
   const Family family = model.lobes.empty() ? Family::kGgx : FamilyOf(model.lobes[0].ndf);
   const bool linear = model.lobes.size() == 1 &&
                       (model.diffuse == Diffuse::kLambert || model.diffuse == Diffuse::kNone) &&
-                      family != Family::kProfile && family != Family::kStudent &&
+                      family != Family::kProfile && family != Family::kStudent && family != Family::kAbg &&
                       (model.lobes[0].fresnel == Fresnel::kSchlick || model.lobes[0].fresnel == Fresnel::kNone);
   if (!linear) {
     throw InputError("recipe '" + recipe.name +

@@ -22,6 +22,12 @@ std::unique_ptr<EnergyRule> KeepEnergy(const Recipe& recipe, const Layout& layou
                      "': energy 'conserving' does not go with drift, alignment or offset, which are fitted apart from "
                      "the surface; leave one of them out");
   }
+  for (const Lobe& lobe : recipe.model.lobes) {
+    if (FamilyOf(lobe.ndf) != Family::kAbg) continue;
+    throw InputError("recipe '" + recipe.name +
+                     "': energy 'conserving' does not go with ndf abg, most of whose light may lie far from its peak; "
+                     "its total integrated scatter is in the result");
+  }
   const std::vector<Vec3> wi = SpreadIncidences(incidences, recipe.theta_max);
   Solution& solution = minima->front().solution;
   const auto keeps = [&] {

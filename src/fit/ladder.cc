@@ -240,8 +240,12 @@ class Ladder {
       }
       const std::vector<Parameter> parameters = Parameters(recipe.model);
       for (std::size_t i = 0; i < parameters.size(); ++i) {
-        if (parameters[i].group != ParameterGroup::kShape || parameters[i].json_name.ends_with("gamma"))
-          rung.others[parameters[i].json_name] = values[i];
+        if (parameters[i].group != ParameterGroup::kShape) rung.others[parameters[i].json_name] = values[i];
+      }
+      for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
+        if (!HasExponent(recipe.model.lobes[l].ndf)) continue;
+        const std::size_t exponent = FirstParameter(recipe.model, l) + kEllipseParameters;
+        rung.others[parameters[exponent].json_name] = values[exponent];
       }
       rung.mean_square.assign(folds_.size(), kNan);
       if (!recipe.free_scale)
@@ -340,6 +344,13 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   Model free;
   free.lobes = {{profile}};
   const Rung* const with_profile = ladder.Try(free, profile_name);
+  // The scatter of polished surfaces is no lobe of facets. A wide lobe has the shape of one, which is searched above.
+  constexpr double kPolished = 0.1;
+  if (ladder.First().shapes[0][0][0] < kPolished) {
+    Model scatter;
+    scatter.lobes = {{IsRound(shape) ? Ndf::kAbg : Ndf::kAbgAnisotropic, Masking::kNone, Fresnel::kNone}};
+    ladder.Try(scatter, NameOf(NdfChoices(), scatter.lobes[0].ndf));
+  }
   Model two;
   two.lobes = {{shape}, {Ndf::kGgx}};
   const std::string two_name = std::string(NameOf(NdfChoices(), shape)) + "+ggx";

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -7,6 +8,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/files/file.h"
 #include "lobefit/base/version.h"
+#include "lobefit/material/abg.h"
 #include "lobefit/material/json.h"
 #include "lobefit/math/vec.h"
 
@@ -72,6 +74,27 @@ Json SlopeSpaceToJson(const Material& material) {
         {{"slope_x", s[0]}, {"slope_y", s[1]}, {"slope_alpha_x", s[2]}, {"slope_alpha_y", s[3]}, {"slope_r", s[4]}});
   }
   return lobes;
+}
+
+// What follows from an ABg lobe's parameters; not read back.
+Json AbgToJson(const Material& material) {
+  Json lobes = Json::array(), scatter = Json::array();
+  for (const AbgNumbers& n : AbgNumbersOf(material)) {
+    lobes.push_back({{"lobe", n.lobe + 1},
+                     {"channel", n.channel},
+                     {"A", n.A},
+                     {"A_stderr", Number(n.A_error)},
+                     {"B", n.B},
+                     {"B_stderr", Number(n.B_error)},
+                     {"g", n.g},
+                     {"g_stderr", Number(n.g_error)}});
+  }
+  for (const ScatterAt& at : material.scatter) {
+    scatter.push_back({{"theta_i_deg", RadiansToDegrees(at.theta_i)},
+                       {"phi_i_deg", RadiansToDegrees(at.phi_i)},
+                       {"share", at.share}});
+  }
+  return {{"lobes", lobes}, {"total_integrated_scatter", scatter}};
 }
 
 Json MatrixToJson(const std::vector<double>& entries, std::size_t n) {
@@ -245,6 +268,9 @@ std::string ToJson(const Material& material) {
         {"loss", material.loss},
         {"theta_max_deg", material.theta_max_deg}}},
   };
+  const std::vector<Lobe>& lobes = material.model.lobes;
+  if (std::any_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return FamilyOf(lobe.ndf) == Family::kAbg; }))
+    json["abg"] = AbgToJson(material);
   if (material.used) {
     const RecipeUsed& used = *material.used;
     Json& recipe = json["recipe"];

@@ -102,6 +102,12 @@ struct TriedModel {
   bool chosen = false;
 };
 
+// The total integrated scatter of the ABg lobes at a measured incident direction.
+struct ScatterAt {
+  double theta_i = 0, phi_i = 0;  // radians
+  std::vector<double> share;      // of the light that arrives, [channel]
+};
+
 // What a fit assumed and found of its instrument. Angles in radians.
 struct Drift {
   double sd = 0;           // of the logarithm of a gain
@@ -177,6 +183,7 @@ struct Material {
   std::vector<TriedModel> tried;             // where the model was chosen automatically
   std::optional<Verdict> verdict;            // of fits of a model
   std::optional<EnergyBalance> energy;       // of fits of a model
+  std::vector<ScatterAt> scatter;            // of fits with ABg lobes whose values are calibrated
   std::optional<InstrumentUsed> instrument;  // of fits through one
 
   std::size_t samples_used = 0, samples_read = 0;

@@ -141,6 +141,10 @@ Lobe ReadLobe(const toml::table& table, const TomlFile& place) {
   place.CheckKeys(table, {"ndf", "masking", "fresnel", "metal", "direction", "knots"}, "of a lobe");
   Lobe lobe;
   ReadChoice(table, "ndf", NdfChoices(), place, &lobe.ndf);
+  if (FamilyOf(lobe.ndf) == Family::kAbg) {  // which go with no others
+    lobe.masking = Masking::kNone;
+    lobe.fresnel = Fresnel::kNone;
+  }
   ReadChoice(table, "masking", MaskingChoices(), place, &lobe.masking);
   ReadChoice(table, "fresnel", FresnelChoices(), place, &lobe.fresnel);
   ReadChoice(table, "direction", LobeDirectionChoices(), place, &lobe.direction);

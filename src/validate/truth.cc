@@ -38,6 +38,7 @@ std::optional<Drawn> RangeOf(const Parameter& parameter, const MaterialRange& ra
   if (name == "tint") return Drawn{0.5, 1.1};
   if (name == "diffuse_roughness") return Drawn{0.1, 0.9};
   if (name == "gamma") return Drawn{1.6, 6};
+  if (name == "g") return Drawn{1.2, 4};
   if (name.starts_with("q")) return Drawn{-0.4, 2};
   if (name == "ior" && parameter.shared) return Drawn{1.3, 2.2};  // of a coat
   return std::nullopt;

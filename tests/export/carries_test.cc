@@ -98,6 +98,20 @@ std::string Refusal(const SyntheticCase& synthetic, const char* target) {
   return "";
 }
 
+// GGX of the same widths would be off by factors of hundreds.
+TEST(Targets, OnlyTablesAndProgramsTakeTheScatterOfAMirror) {
+  SyntheticCase mirror = test::Tilted();
+  mirror.model = {{{Ndf::kAbg, Masking::kNone, Fresnel::kNone}}, Diffuse::kLambert};
+  mirror.values = {{0.003}, {0.003}, {0}, {0}, {0}, {1.8}, {0.001, 0.001, 0.001}, {0, 0, 0}};
+  const FittedBrdf fit(test::MaterialOf(mirror));
+  for (const char* name : {"pbrt", "mitsuba", "materialx", "openpbr", "gltf"})
+    EXPECT_THAT(FindTarget(name).refusal(fit), HasSubstr("'abg'")) << name;
+  for (const char* name : {"rgl", "bsdf-xml", "glsl", "csv", "json", "merl"}) {
+    const Target& target = FindTarget(name);
+    EXPECT_TRUE(target.refusal == nullptr || target.refusal(fit).empty()) << name;
+  }
+}
+
 TEST(Targets, RefuseWhatTheyCannotHold) {
   EXPECT_THAT(Refusal(test::Tilted(), "merl"), HasSubstr("sample.material.json: merl cannot hold this material"));
   EXPECT_THAT(Refusal(test::Tilted(), "merl"), HasSubstr("tilted; targets that can: rgl, gltf"));

@@ -150,6 +150,24 @@ SyntheticCase Retro() {
                                   {0.1},         {0.1},          {0},   {0},    {0},    {0.3, 0.2, 0.1},
                                   {0.5, 0.9, 1}, {0.1, 0.2, 0.3}});
 }
+// The scatter of a polished surface beside a lobe of facets.
+SyntheticCase Scatter() {
+  return Made({{Ndf::kAbgAnisotropic, Masking::kNone, Fresnel::kNone}, {Ndf::kGgx}}, Diffuse::kLambert,
+              {{0.02},
+               {0.01},
+               {0},
+               {0},
+               {0.4},
+               {1.6},
+               {0.9, 0.6, 0.3},
+               {0.3},
+               {0.3},
+               {0},
+               {0},
+               {0},
+               {0.1, 0.2, 0.05},
+               {0.1, 0.2, 0.3}});
+}
 // A coloured coat that refracts, over an ellipsoid, a retro lobe and a Lambertian part.
 SyntheticCase Coated() {
   return Made({{Ndf::kEllipsoid, Masking::kSmithSeparable, Fresnel::kSchlick},
@@ -208,6 +226,7 @@ const ShaderCase kShaderCases[] = {{"tilted", test::Tilted},
                                    {"light_student", LightStudent},
                                    {"student_schlick_smith", StudentSchlickSmith},
                                    {"retro", Retro},
+                                   {"scatter", Scatter},
                                    {"spectral_profile", SpectralProfile},
                                    {"coated", Coated},
                                    {"spectral_coat", SpectralCoat}};

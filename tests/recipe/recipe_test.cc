@@ -187,7 +187,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "r.toml:2: ndf = 'ggxx' is unknown (did you mean 'ggx'?); allowed: ggx, ggx-tilted, ggx-anisotropic, "
                 "ellipsoid, beckmann, beckmann-anisotropic, beckmann-off-center, kagiwada-kalaba, spherical-gaussian, "
                 "profile, profile-tilted, profile-anisotropic, profile-ellipsoid, student, student-tilted, "
-                "student-anisotropic, student-ellipsoid"},
+                "student-anisotropic, student-ellipsoid, abg, abg-anisotropic"},
+        BadCase{"[[lobe]]\nndf = \"abg\"\nmasking = \"smith-height\"\n",
+                "r.toml:1: ndf abg is f_r itself: it goes with masking = 'none'"},
+        BadCase{"[[lobe]]\nndf = \"abg\"\nfresnel = \"schlick\"\n",
+                "r.toml:1: ndf abg is f_r itself: it goes with fresnel = 'none'"},
+        BadCase{"[[lobe]]\nndf = \"ggx\"\nmasking = \"none\"\n",
+                "r.toml:1: masking none goes with ndf abg only, not with ggx"},
+        BadCase{"[[lobe]]\nndf = \"abg\"\n[[lobe]]\nndf = \"ggx\"\nfresnel = \"coat-layered\"\n",
+                "r.toml:3: ndf abg is the scatter of the whole surface: no coat lies over it"},
         BadCase{"[[lobe]]\nmasking = \"v-cavity\"\n",
                 "r.toml:1: masking v-cavity needs a lobe about the normal, ellipsoid may tilt; use ndf ggx-anisotropic "
                 "or beckmann-anisotropic, or a Smith masking"},

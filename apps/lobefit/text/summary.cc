@@ -8,6 +8,7 @@
 
 #include "lobefit/base/text/printable.h"
 #include "lobefit/base/text/text.h"
+#include "lobefit/material/abg.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/measurement/set_aside.h"
 
@@ -59,6 +60,27 @@ void AppendParameters(const Material& material, std::string* text) {
   }
 }
 
+// An ABg lobe by the numbers that stray-light programs take, and what it scatters.
+void AppendAbg(const Material& material, std::string* text) {
+  const auto with_error = [](const char* name, double value, double error) {
+    return std::isfinite(error) && error > 0 ? fmt::format("  {} {:.4g} +- {:.2g}", name, value, error)
+                                             : fmt::format("  {} {:.4g}", name, value);
+  };
+  for (const AbgNumbers& n : AbgNumbersOf(material)) {
+    const std::string channel = material.channels.size() > 1 ? " of " + n.channel : "";
+    *text += fmt::format("ABg{}: f_r = A / (B + |beta - beta0|^g),{}{}{}\n", channel, with_error("A", n.A, n.A_error),
+                         with_error("B", n.B, n.B_error), with_error("g", n.g, n.g_error));
+  }
+  if (material.scatter.empty()) return;
+  *text += "Total integrated scatter:";
+  for (const ScatterAt& at : material.scatter) {
+    *text += fmt::format("{} {:.3g}", &at == &material.scatter.front() ? "" : ",",
+                         *std::max_element(at.share.begin(), at.share.end()));
+    *text += fmt::format(" at theta_i {:.3g}", RadiansToDegrees(at.theta_i));
+  }
+  *text += material.channels.size() > 1 ? " (the largest of the channels)\n" : "\n";
+}
+
 // At most twelve slices of a table of lobes, evenly chosen.
 void AppendLobes(const SelTable& table, const std::string& channel, std::string* text) {
   *text += fmt::format(
@@ -107,6 +129,7 @@ std::string Summary(const Material& material) {
     text +=
         fmt::format("\nParameters (+- one standard error), metric {} on {}:\n", material.metric, material.weighting);
     AppendParameters(material, &text);
+    AppendAbg(material, &text);
   }
   if (!material.tried.empty()) {
     text += "Models tried, error on incident directions held out:\n";

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "lobefit/core/axial/axial_distribution.h"
+#include "lobefit/core/brdf/abg_lobe.h"
 #include "lobefit/core/brdf/coat.h"
 #include "lobefit/core/brdf/radial_lobe.h"
 #include "lobefit/core/fresnel/fresnel.h"
@@ -16,6 +17,7 @@ namespace {
 
 bool IsFast(Masking masking) { return masking <= Masking::kSmithHeight; }
 bool IsGgx(const Lobe& lobe) { return FamilyOf(lobe.ndf) == Family::kGgx; }
+bool IsAbg(const Lobe& lobe) { return FamilyOf(lobe.ndf) == Family::kAbg; }
 
 const std::shared_ptr<const ProfileGrid>& PowerLawGrid() {
   static const auto grid =
@@ -76,8 +78,8 @@ void FastRadialLobe(const DirectionArrays& d, const Lobe& lobe, const LobeShape&
                     double* gradient) {
   if (FamilyOf(lobe.ndf) == Family::kProfile)
     return RadialLobe(d, shape.slope, *shape.masking, lobe.masking, specular, cos_d, gradient);
-  const double rest = shape.gamma - 1.0, scale = std::sqrt(rest);
-  const SlopeCoordinates wide = Widened(shape.slope, shape.gamma);
+  const double rest = shape.exponent - 1.0, scale = std::sqrt(rest);
+  const SlopeCoordinates wide = Widened(shape.slope, shape.exponent);
   RadialLobe(d, wide, *shape.masking, lobe.masking, specular, cos_d, gradient);
   const std::size_t n = d.count;
   for (std::size_t i = 0; gradient != nullptr && i < n; ++i) {
@@ -93,10 +95,11 @@ LobeShape::LobeShape(const Lobe& lobe, const SlopeCoordinates& ellipse, const st
     : slope(ellipse) {
   const Family family = FamilyOf(lobe.ndf);
   if (family == Family::kStudent) {
-    gamma = profile[0];
+    exponent = profile[0];
     masking = std::make_shared<const ProfileMasking>(
-        PowerLawGrid(), Profile(PowerLawGrid()->spline(), std::vector<double>{gamma - 2.0}));
+        PowerLawGrid(), Profile(PowerLawGrid()->spline(), std::vector<double>{exponent - 2.0}));
   }
+  if (family == Family::kAbg) exponent = profile[0];
   if (family == Family::kProfile)
     masking = std::make_shared<const ProfileMasking>(GridOf(lobe), Profile(GridOf(lobe)->spline(), profile));
 }
@@ -119,6 +122,13 @@ std::unique_ptr<NormalDistribution> DistributionOf(const Lobe& lobe, const LobeS
   const Family family = FamilyOf(lobe.ndf);
   const std::size_t size = ShapeParameters(lobe);
   const SlopeCoordinates& s = shape.slope;
+  if (family == Family::kAbg) {
+    if (jacobian != nullptr) {
+      jacobian->assign(size * size, 0.0);
+      for (std::size_t k = 0; k < size; ++k) (*jacobian)[k * size + k] = 1;
+    }
+    return std::make_unique<AbgDistribution>(s, shape.exponent);
+  }
   const double a = std::exp(s.v[2]), b = s.v[3], c = std::exp(s.v[4]);
   const bool on_sphere = family == Family::kKagiwadaKalaba || family == Family::kSphericalGaussian;
   if (jacobian != nullptr) jacobian->assign((on_sphere ? 1 : size) * size, 0.0);
@@ -156,6 +166,12 @@ double SpecularLobe(const Vec3& wi, const Vec3& wo, const Lobe& lobe, const Lobe
     FastRadialLobe({&light.x, &light.y, &light.z, &wo.x, &wo.y, &wo.z, 1}, lobe, shape, &specular, cos_d, gradient);
     return specular;
   }
+  if (IsAbg(lobe)) {
+    double specular;
+    AbgLobe({&light.x, &light.y, &light.z, &wo.x, &wo.y, &wo.z, 1}, shape.slope, shape.exponent, &specular, cos_d,
+            gradient);
+    return specular;
+  }
   return GeneralLobe(lobe, shape).Evaluate(light, wo, cos_d, gradient);
 }
 
@@ -175,6 +191,7 @@ void SpecularLobe(const DirectionArrays& directions, const Lobe& lobe, const Lob
   if (IsFast(lobe.masking) && IsGgx(lobe)) return GgxLobe(d, shape.slope, lobe.masking, specular, cos_d, gradient);
   if (IsFast(lobe.masking) && shape.masking != nullptr)
     return FastRadialLobe(d, lobe, shape, specular, cos_d, gradient);
+  if (IsAbg(lobe)) return AbgLobe(d, shape.slope, shape.exponent, specular, cos_d, gradient);
   const GeneralLobe general(lobe, shape);
   std::vector<double> by_shape(ShapeParameters(lobe));
   for (std::size_t i = 0; i < d.count; ++i) {

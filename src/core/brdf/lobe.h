@@ -23,7 +23,7 @@ struct LobeShape {
   LobeShape(const Lobe& lobe, const SlopeCoordinates& ellipse, const std::vector<double>& profile);
 
   SlopeCoordinates slope;
-  double gamma = 2;                               // of Student's
+  double exponent = 2;                            // gamma of Student's, g of ABg
   std::shared_ptr<const ProfileMasking> masking;  // of a profile; of the power law for Student's
 };
 // From values in the order of Parameters(model), inside units, beginning with the lobe's alpha_x.
@@ -33,7 +33,7 @@ LobeShape ShapeAt(const Lobe& lobe, const std::vector<double>* values);
 // ggx_lobe.h, ShapeParameters(lobe) arrays: by the slope coordinates, then by gamma or q. GGX with separable or
 // height-correlated masking is evaluated in SIMD (some 80 million samples a second and core), profiles and Student's
 // with these by their tables (some 10), every other lobe by its general form (one to three).
-// Round distributions on the sphere read the width a only. A retro lobe is evaluated at the mirrored wi. [Heitz eq 29],
+// Round distributions on the sphere read the width a only. An ABg lobe is its f_r (abg_lobe.h). A retro lobe is evaluated at the mirrored wi. [Heitz eq 29],
 // microfacet.h.
 void SpecularLobe(const DirectionArrays& directions, const Lobe& lobe, const LobeShape& shape, double* specular,
                   double* cos_d, double* gradient);

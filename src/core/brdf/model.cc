@@ -46,11 +46,15 @@ constexpr NdfRow kNdfs[] = {
     {Family::kStudent, true, true, {true, false, false, true, false}},
     {Family::kStudent, false, false, {true, true, false, false, true}},
     {Family::kStudent, false, true, {true, true, true, true, true}},
+    {Family::kAbg, true, false, {true, false, false, false, false}},
+    {Family::kAbg, false, false, {true, true, false, false, true}},
 };
 const NdfRow& RowOf(Ndf ndf) { return kNdfs[static_cast<std::size_t>(ndf)]; }
 
 // Lobes on the whole sphere of normals have no axis that must be the longest: alpha = 10 is nearly isotropic.
 constexpr double kSphereAlphaHigh = 10;
+// Scatter bends within the mirror itself: B = 1e-8 with g = 2 is a width of 5e-5.
+constexpr double kAbgAlphaLow = 1e-6;
 
 // What a lobe has beside its ellipse. Bounds: math.md 8.1, 8.2. q1 = -2 is a flat top; below, the density dips at the
 // centre. The last exponent must stay above 3/2, where the mean slope ends.
@@ -64,6 +68,8 @@ std::vector<ProfileRow> ProfileRows(const Lobe& lobe) {
   if (family == Family::kStudent) {
     return {{"gamma", 1.55, 100, 2, "exponent of the tail of the slopes: 2 is GGX, large is Beckmann"}};
   }
+  if (family == Family::kAbg)
+    return {{"g", 0.3, 10, 2, "exponent of the fall with the distance from the mirror direction"}};
   std::vector<ProfileRow> rows;
   if (family != Family::kProfile) return rows;
   const std::vector<double>& knots = GridOf(lobe)->spline()->knots();
@@ -137,6 +143,8 @@ const char* WhyNoCoat(const Model& model) {
   const Lobe& lobe = model.lobes[coat];
   for (std::size_t l = 0; l < model.lobes.size(); ++l) {
     if (l != coat && IsCoat(model.lobes[l].fresnel)) return "a model has one coat at most";
+    if (FamilyOf(model.lobes[l].ndf) == Family::kAbg)
+      return "ndf abg is the scatter of the whole surface: no coat lies over it";
   }
   if (model.lobes.size() == 1 && model.diffuse == Diffuse::kNone)
     return "a coat lies over something: add a [[lobe]] or a diffuse part below it";
@@ -154,6 +162,7 @@ Family FamilyOf(Ndf ndf) { return RowOf(ndf).family; }
 bool IsRound(Ndf ndf) { return RowOf(ndf).round; }
 bool IsTilted(Ndf ndf) { return RowOf(ndf).tilted; }
 bool IsInPlane(Ndf ndf) { return RowOf(ndf).round && RowOf(ndf).tilted; }
+bool HasExponent(Ndf ndf) { return FamilyOf(ndf) == Family::kStudent || FamilyOf(ndf) == Family::kAbg; }
 
 std::string WhyNotEvaluable(const Model& model) {
   for (const Lobe& lobe : model.lobes) {
@@ -165,6 +174,12 @@ std::string WhyNotEvaluable(const Model& model) {
       return std::string("direction retro needs a lobe about the normal, ") + NameOf(NdfChoices(), lobe.ndf) +
              " may tilt, and would not be reciprocal; use ndf ggx, ggx-anisotropic or one of the others without a tilt";
     }
+    const bool abg = FamilyOf(lobe.ndf) == Family::kAbg;
+    if (abg != (lobe.masking == Masking::kNone)) {
+      return abg ? "ndf abg is f_r itself: it goes with masking = 'none'"
+                 : std::string("masking none goes with ndf abg only, not with ") + NameOf(NdfChoices(), lobe.ndf);
+    }
+    if (abg && lobe.fresnel != Fresnel::kNone) return "ndf abg is f_r itself: it goes with fresnel = 'none'";
     if (lobe.grid != nullptr && FamilyOf(lobe.ndf) != Family::kProfile) {
       return std::string("knots go with a profile only, not with ndf ") + NameOf(NdfChoices(), lobe.ndf);
     }
@@ -213,6 +228,7 @@ std::size_t FresnelParameters(Fresnel fresnel) {
 std::size_t ShapeParameters(const Lobe& lobe) {
   switch (FamilyOf(lobe.ndf)) {
     case Family::kStudent:
+    case Family::kAbg:
       return kEllipseParameters + 1;
     case Family::kProfile:
       return kEllipseParameters + GridOf(lobe)->spline()->size();
@@ -260,7 +276,8 @@ std::vector<Parameter> Parameters(const Model& model) {
       const ShapeRow& row = kShapeRows[i];
       const bool is_angle = std::string_view(row.unit) == "deg";
       const std::string name = prefix + row.name;
-      parameters.push_back({name, name + (is_angle ? "_deg" : ""), row.unit, row.low,
+      parameters.push_back({name, name + (is_angle ? "_deg" : ""), row.unit,
+                            family == Family::kAbg && i < 2 ? kAbgAlphaLow : row.low,
                             sphere && i < 2 ? kSphereAlphaHigh : row.high, ParameterGroup::kShape, false,
                             RowOf(lobe.ndf).free[i], row.description});
     }
@@ -312,6 +329,8 @@ const std::vector<Choice<Ndf>>& NdfChoices() {
       {Ndf::kStudentTilted, "student-tilted", "Student's, tilted within the plane of the measurement"},
       {Ndf::kStudentAnisotropic, "student-anisotropic", "Student's, anisotropic, rotated about the normal"},
       {Ndf::kStudentEllipsoid, "student-ellipsoid", "Student's on the five-parameter ellipse: rotated and tilted"},
+      {Ndf::kAbg, "abg", "A / (B + |beta - beta0|^g), the scatter of polished surfaces"},
+      {Ndf::kAbgAnisotropic, "abg-anisotropic", "the same, anisotropic, rotated about the normal"},
   };
   return choices;
 }
@@ -326,6 +345,7 @@ const std::vector<Choice<Masking>>& MaskingChoices() {
       {Masking::kImplicit, "implicit", "for comparison: cancels the cosines of the denominator"},
       {Masking::kSchlickSmith, "schlick-smith", "for comparison: Schlick's rational masking"},
       {Masking::kKelemen, "kelemen", "for comparison: cosines over (wi . wh)^2"},
+      {Masking::kNone, "none", "of ndf abg, which is f_r itself"},
   };
   return choices;
 }

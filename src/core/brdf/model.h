@@ -37,12 +37,16 @@ enum class Ndf {
   kStudentTilted,
   kStudentAnisotropic,
   kStudentEllipsoid,
+  // Scatter of polished surfaces, round and anisotropic (abg_lobe.h): the ellipse, then g.
+  kAbg,
+  kAbgAnisotropic,
 };
 
 Family FamilyOf(Ndf ndf);
-bool IsRound(Ndf ndf);    // alpha_y follows alpha_x
-bool IsTilted(Ndf ndf);   // the axis may leave the normal
-bool IsInPlane(Ndf ndf);  // round, and tilted within the plane of the measurement
+bool IsRound(Ndf ndf);      // alpha_y follows alpha_x
+bool IsTilted(Ndf ndf);     // the axis may leave the normal
+bool IsInPlane(Ndf ndf);    // round, and tilted within the plane of the measurement
+bool HasExponent(Ndf ndf);  // one number after the ellipse, gamma or g
 
 enum class Fresnel {
   kSchlick,     // F = f0 + (1 - f0) (1 - cos_theta_d)^5, f0 a channel
@@ -113,7 +117,7 @@ struct Parameter {
 };
 
 // The parameters in their fixed order: for each lobe alpha_x, alpha_y, theta_x, theta_y, theta_z and those of its
-// profile (gamma; or q1 .. qK), then those of its Fresnel term (f0; f0, tint; F_0 .. F_5; eta, k; ior; ior, tau; or
+// profile (gamma; g; or q1 .. qK), then those of its Fresnel term (f0; f0, tint; F_0 .. F_5; eta, k; ior; ior, tau; or
 // scale); then
 // the diffuse part's (interface_ior; or diffuse_roughness), last its albedo.
 std::vector<Parameter> Parameters(const Model& model);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
+#include "lobefit/core/brdf/abg_lobe.h"
 #include "lobefit/core/brdf/coat.h"
 #include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/diffuse_facets.h"
@@ -63,6 +65,13 @@ bool Leaves(const Cover& cover, const Vec3& inside, Vec3* wo, double* spread) {
 void AddLobe(const Lobe& lobe, const LobeShape& shape, Fresnel fresnel,
              const std::vector<std::vector<double>>& parameters, const Cover* cover, const Vec3& from,
              const FacetGrid& grid, std::vector<double>* albedo) {
+  if (FamilyOf(lobe.ndf) == Family::kAbg) {
+    const Vec3 light = lobe.direction == LobeDirection::kRetro ? Mirrored(from) : from;
+    const double unit = AbgAlbedo(shape.slope, shape.exponent, light);
+    for (std::size_t c = 0; c < albedo->size(); ++c)
+      (*albedo)[c] += unit * FresnelFactor(fresnel, parameters[c].data(), 1, nullptr);
+    return;
+  }
   const Vec3 wi = cover != nullptr && cover->refracted ? Refracted(from, cover->ior) : from;
   const Vec3 light = lobe.direction == LobeDirection::kRetro ? Mirrored(wi) : wi;
   std::vector<double> in[3], out[3], weight, path;
@@ -167,6 +176,7 @@ double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std
 double WeakFurnace(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& u) {
   const Masking masking = model.lobes[lobe].masking;
   if (masking == Masking::kSmithUnclamped || masking == Masking::kVCavity) return 1;
+  if (masking == Masking::kNone) return std::numeric_limits<double>::quiet_NaN();
   const LobeShape shape = ShapeOf(model, values, lobe);
   const std::unique_ptr<NormalDistribution> distribution = DistributionOf(model.lobes[lobe], shape, nullptr);
   if (masking <= Masking::kSmithHeightDirection) return std::min(1.0, distribution->Sigma(u) / u.z);

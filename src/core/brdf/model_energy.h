@@ -14,7 +14,7 @@ struct FacetGrid {
 };
 
 // Directional albedo, integral of f_r cos(theta_o) over wo, a channel; wi away from the surface. The specular part is
-// integrated over each lobe's slopes; a Lambertian part exactly, diffuse microfacets over 24 x 48 directions.
+// integrated over each lobe's slopes, that of an ABg lobe over direction cosines (abg_lobe.h); a Lambertian part exactly, diffuse microfacets over 24 x 48 directions.
 std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
                                       const Vec3& wi, const FacetGrid& grid = {});
 
@@ -23,7 +23,7 @@ double SingleBounceAlbedo(const Model& model, const ParameterValues& values, std
 
 // Weak white furnace [Heitz eq 36], over the whole sphere of reflected directions: min(1, sigma(u) / cos) for a clamped
 // Smith G1, 1 for an unclamped one and for V-cavities [MATH.md section 5]; over the points above (error below 1 %) for
-// the maskings that do not come from a surface.
+// the maskings that do not come from a surface, NaN for an ABg lobe, which has none.
 double WeakFurnace(const Model& model, const ParameterValues& values, std::size_t lobe, const Vec3& u);
 
 }  // namespace lobefit

@@ -15,6 +15,7 @@ enum class Masking {
   kImplicit,      // cos_theta_i cos_theta_o [Heitz eq 56]
   kSchlickSmith,  // [Schlick 1994] with m^2 the product of the widths in slope space
   kKelemen,       // cos_theta_i cos_theta_o / (wi . wh)^2 [Heitz eq 58]
+  kNone,          // of lobes that are f_r themselves (abg_lobe.h)
 };
 
 // Made of the distribution's own Lambda.

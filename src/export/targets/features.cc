@@ -143,13 +143,17 @@ Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes, b
   return model;
 }
 
-std::string RefuseOnlyRetro(const FittedBrdf& fit) {
+std::string RefuseForeignLobes(const FittedBrdf& fit) {
+  for (const FittedLobe& lobe : fit.lobes()) {
+    if (FamilyOf(lobe.choices.ndf) == Family::kAbg)
+      return "it has no lobe like 'abg', which falls by a power over decades; take rgl, bsdf-xml or glsl";
+  }
   const bool only = std::all_of(fit.lobes().begin(), fit.lobes().end(), [](const FittedLobe& l) { return l.retro; });
   return only && !fit.lobes().empty() ? "it has no lobe about the back direction" : "";
 }
 
 std::string RefuseNoLobe(const FittedBrdf& fit) {
-  return fit.lobes().empty() ? "it needs a specular lobe, and the fit has none" : RefuseOnlyRetro(fit);
+  return fit.lobes().empty() ? "it needs a specular lobe, and the fit has none" : RefuseForeignLobes(fit);
 }
 
 std::string RefuseUnknownTerms(const FittedBrdf& fit) {

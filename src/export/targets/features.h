@@ -36,8 +36,8 @@ inline constexpr std::size_t kAnyNumber = 100;
 // `tint_and_roughness`: it has an edge tint for Fresnel terms that are not Schlick's, and Oren-Nayar diffuse parts.
 Model OwnModel(const FittedBrdf& fit, Masking masking, std::size_t most_lobes, bool tint_and_roughness = false);
 
-// "" or that all lobes lie about the back direction.
-std::string RefuseOnlyRetro(const FittedBrdf& fit);
+// "" or that all lobes lie about the back direction, or that one is no lobe of facets.
+std::string RefuseForeignLobes(const FittedBrdf& fit);
 // "" or that, or that the target needs a lobe.
 std::string RefuseNoLobe(const FittedBrdf& fit);
 // "" or the name of a distribution, masking or Fresnel term that shader text does not know.

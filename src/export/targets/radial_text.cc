@@ -99,7 +99,7 @@ PiecewisePolynomial ProfileExcess(const Profile& profile) {
 MaskingRatio MaskingRatioOf(const Lobe& lobe, const LobeShape& shape) {
   const ProfileMasking& masking = *shape.masking;
   // Student's M(a) is scale M(a / scale) of the power law.
-  const double scale = FamilyOf(lobe.ndf) == Family::kStudent ? std::sqrt(shape.gamma - 1) : 1;
+  const double scale = FamilyOf(lobe.ndf) == Family::kStudent ? std::sqrt(shape.exponent - 1) : 1;
   std::vector<double> row(masking.stride());
   const auto ratio = [&](double w) {
     const double a = std::sinh(w) / scale;
@@ -131,7 +131,7 @@ std::string RadialFunctions(const std::string& prefix, const Lobe& lobe, const L
   std::string text;
   if (FamilyOf(lobe.ndf) == Family::kStudent) {
     text = fmt::format("float {}excess(float u) {{ return 2.0 * u - {} * log(1.0 + (exp(u) - 1.0) / {}); }}\n", prefix,
-                       FloatLiteral(shape.gamma), FloatLiteral(shape.gamma - 1));
+                       FloatLiteral(shape.exponent), FloatLiteral(shape.exponent - 1));
   } else {
     text = fmt::format("float {}excess(float u) {{\n  float x = 0.0;\n  float value = 0.0;\n{}  return value;\n}}\n",
                        prefix, PiecesText(ProfileExcess(shape.masking->profile()), "u"));

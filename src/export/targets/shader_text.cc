@@ -99,7 +99,10 @@ std::string SpectrumBody(const FittedBrdf& fit, const std::string& prefix) {
   return text;
 }
 
-int FamilyNumber(const Lobe& lobe) { return FamilyOf(lobe.ndf) == Family::kBeckmann ? 1 : 0; }
+int FamilyNumber(const Lobe& lobe) {
+  const Family family = FamilyOf(lobe.ndf);
+  return family == Family::kAbg ? 2 : family == Family::kBeckmann ? 1 : 0;
+}
 
 // Of lobe.glsl.inc.
 int MaskingNumber(Masking masking) {
@@ -121,6 +124,8 @@ int MaskingNumber(Masking masking) {
       return 6;
     case Masking::kKelemen:
       return 7;
+    case Masking::kNone:
+      return 8;
   }
   return 0;
 }
@@ -172,8 +177,10 @@ std::string ShaderLobe(const FittedBrdf& fit, std::size_t lobe, const std::strin
   const Lobe& choices = fit.lobes()[lobe].choices;
   const char* directions = NamesOf(fit, lobe).directions;
   if (IsRadial(choices)) return fmt::format("{}value({}, {})", LobePrefix(prefix, lobe), directions, slopes);
-  return fmt::format("lobefit_lobe({}, {}, {}, {}, 0.0, 1.0, 1.0)", directions, slopes, FamilyNumber(choices),
-                     MaskingNumber(choices.masking));
+  const std::string excess =
+      FamilyOf(choices.ndf) == Family::kAbg ? FloatLiteral(fit.reflectance().shapes()[lobe].exponent) : "0.0";
+  return fmt::format("lobefit_lobe({}, {}, {}, {}, {}, 1.0, 1.0)", directions, slopes, FamilyNumber(choices),
+                     MaskingNumber(choices.masking), excess);
 }
 
 std::string ShaderFresnel(const FittedBrdf& fit, std::size_t lobe, const std::vector<std::string>& parameters) {

@@ -44,6 +44,23 @@ EnergyBalance BalanceAt(const std::vector<Vec3>& wi, const Model& model, const P
   return balance;
 }
 
+std::vector<ScatterAt> ScatterOfAbg(const std::vector<Vec3>& wi, const Model& model, const ParameterValues& values,
+                                    std::size_t channels) {
+  std::vector<ScatterAt> scatter;
+  for (const Vec3& direction : wi) {
+    ScatterAt at = {PolarAngle(direction), std::atan2(direction.y, direction.x), std::vector<double>(channels, 0.0)};
+    bool any = false;
+    for (std::size_t l = 0; l < model.lobes.size(); ++l) {
+      if (FamilyOf(model.lobes[l].ndf) != Family::kAbg) continue;
+      any = true;
+      const double unit = SingleBounceAlbedo(model, values, l, direction);
+      for (std::size_t c = 0; c < channels; ++c) at.share[c] += unit * values[FirstFresnel(model, l)][c];
+    }
+    if (any) scatter.push_back(std::move(at));
+  }
+  return scatter;
+}
+
 void JudgeEnergy(const EnergyBalance& balance, Verdict* verdict) {
   if (!CreatesEnergy(balance) || verdict->kind == VerdictKind::kDoesNotDescribe) return;
   verdict->kind = VerdictKind::kRough;

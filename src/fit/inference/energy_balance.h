@@ -22,6 +22,10 @@ EnergyBalance BalanceAt(const std::vector<Vec3>& wi, const Model& model, const P
                         const std::vector<std::string>& channels, ThreadPool* pool,
                         const FacetGrid& grid = kBalanceGrid);
 
+// The scatter of the ABg lobes alone at the directions; empty where the model has none.
+std::vector<ScatterAt> ScatterOfAbg(const std::vector<Vec3>& wi, const Model& model, const ParameterValues& values,
+                                    std::size_t channels);
+
 // A model that creates energy describes what was measured, and no surface: at best rough, with what to do about it.
 // Does nothing for values of a free scale.
 void JudgeEnergy(const EnergyBalance& balance, Verdict* verdict);

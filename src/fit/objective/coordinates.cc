@@ -94,13 +94,18 @@ void Layout::AddProfile(std::size_t lobe, const std::vector<Parameter>& paramete
     if (!entry.fixed.empty()) continue;
     const double low = entry.low.value_or(parameter.low), high = entry.high.value_or(parameter.high);
     shape->profile.push_back(k);
-    if (IsGamma(lobe)) {
-      coordinates_.push_back(
-          {"ln(" + parameter.name + " - 3/2)", std::log(low - kLeastGamma), std::log(high - kLeastGamma)});
+    if (IsExponent(lobe)) {
+      const double least = LeastExponent(lobe);
+      coordinates_.push_back({least > 0 ? "ln(" + parameter.name + " - 3/2)" : "ln " + parameter.name,
+                              std::log(low - least), std::log(high - least)});
     } else {
       coordinates_.push_back({parameter.name, low, high, 1 / (kProfileSpread * kProfileSpread)});
     }
   }
+}
+
+double Layout::LeastExponent(std::size_t lobe) const {
+  return FamilyOf(recipe_.model.lobes[lobe].ndf) == Family::kStudent ? kLeastGamma : 0.0;
 }
 
 std::vector<double> Layout::ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes) const {
@@ -108,8 +113,8 @@ std::vector<double> Layout::ProfileAt(std::size_t lobe, const double* u, std::ve
   std::vector<double> values = shape.profile_start;
   for (std::size_t k = 0; k < shape.profile.size(); ++k) {
     const double x = u[shape.first + shape.entries.size() + k];
-    values[shape.profile[k]] = IsGamma(lobe) ? kLeastGamma + std::exp(x) : x;
-    if (slopes != nullptr) slopes->push_back(IsGamma(lobe) ? std::exp(x) : 1.0);
+    values[shape.profile[k]] = IsExponent(lobe) ? LeastExponent(lobe) + std::exp(x) : x;
+    if (slopes != nullptr) slopes->push_back(IsExponent(lobe) ? std::exp(x) : 1.0);
   }
   return values;
 }
@@ -327,7 +332,7 @@ std::vector<double> Layout::FromShapes(const std::vector<Ellipsoid>& shapes) con
     SetEllipsoid(shapes_[l], shapes[l], &u);
     for (std::size_t k = 0; k < shapes_[l].profile.size(); ++k) {
       const double start = shapes_[l].profile_start[shapes_[l].profile[k]];
-      u[shapes_[l].first + shapes_[l].entries.size() + k] = IsGamma(l) ? std::log(start - kLeastGamma) : start;
+      u[shapes_[l].first + shapes_[l].entries.size() + k] = IsExponent(l) ? std::log(start - LeastExponent(l)) : start;
     }
   }
   for (const std::vector<Linear>& channel : linear_) {

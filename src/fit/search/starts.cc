@@ -14,6 +14,8 @@ namespace {
 
 // A factor of 1.6 to 2 between neighbours: from any lobe the nearest is well within the basin of its minimum.
 constexpr double kAlphas[] = {0.005, 0.01, 0.02, 0.04, 0.08, 0.15, 0.25, 0.4, 0.65};
+// Polished surfaces bend within the width of an instrument.
+constexpr double kPolishedAlphas[] = {0.0002, 0.0005, 0.0012, 0.0025};
 constexpr double kMirror = 5e-4;  // narrower than the cells of any table
 constexpr double kAspect = 4;     // alpha_x / alpha_y of the anisotropic candidates
 
@@ -112,9 +114,12 @@ Ellipsoid PeakAxis(const Samples& samples, Ndf ndf, double plane_azimuth) {
 std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double plane_azimuth) {
   std::vector<Ellipsoid> tilts = {{1, 1, 0, 0, IsInPlane(ndf) ? -plane_azimuth : 0.0}};
   if (IsTilted(ndf)) tilts.push_back(PeakAxis(samples, ndf, plane_azimuth));
+  std::vector<double> alphas(std::begin(kAlphas), std::end(kAlphas));
+  if (FamilyOf(ndf) == Family::kAbg)
+    alphas.insert(alphas.begin(), std::begin(kPolishedAlphas), std::end(kPolishedAlphas));
   std::vector<Ellipsoid> shapes;
   for (const Ellipsoid& tilt : tilts) {
-    for (const double alpha : kAlphas) {
+    for (const double alpha : alphas) {
       Ellipsoid shape = tilt;
       shape.alpha_x = shape.alpha_y = alpha;
       shapes.push_back(shape);

@@ -54,8 +54,10 @@ void Draw(const ReportData& data, const Energy& energy, Canvas* canvas, const Bo
   std::vector<Stroke> strokes;
   for (const std::size_t c : data.shown_channels) strokes.push_back({data.channel_colors[c], 2});
   entry("albedo of the fitted model", strokes);
-  entry("its lobe with F = 1: what one bounce keeps", {{style::kSecondary, 1, 1, 6, 4}});
-  entry("weak furnace of its masking; 1 is exact", {{style::kInk, 1, 1, 2, 3}});
+  if (!energy.bounce.empty()) {
+    entry("its lobe with F = 1: what one bounce keeps", {{style::kSecondary, 1, 1, 6, 4}});
+    entry("weak furnace of its masking; 1 is exact", {{style::kInk, 1, 1, 2, 3}});
+  }
   const double most = energy.high;
   if (most > 1.06)
     canvas->Text({content.x, y}, "An albedo above 1: the model creates energy.", style::Note(style::kWarning));
@@ -78,11 +80,18 @@ std::optional<Panel> EnergyPanel(const ReportData& data) {
       energy->albedo[k].push_back(albedo[data.shown_channels[k]]);
       most = std::max(most, albedo[data.shown_channels[k]]);
     }
+    if (material.model.lobes[0].masking == Masking::kNone) continue;  // no surface whose light could be counted
     energy->bounce.push_back(SingleBounceAlbedo(material.model, values, 0, wi));
     energy->furnace.push_back(WeakFurnace(material.model, values, 0, wi));
     most = std::max(most, energy->bounce.back());
   }
   energy->high = most <= 1.02 ? 1.05 : most * 1.08;
+  // The scatter of a mirror is thousandths of the light.
+  if (double highest = 0; energy->bounce.empty()) {
+    for (const std::vector<double>& albedo : energy->albedo)
+      highest = std::max(highest, *std::max_element(albedo.begin(), albedo.end()));
+    if (highest > 0 && highest < 0.1) energy->high = 1.2 * highest;
+  }
   Panel panel;
   panel.id = "energy";
   panel.title = "Energy";

@@ -10,7 +10,7 @@ uniform int channels;
 uniform vec4 shape[8];       // mean slope x, y; a, b of the Cholesky factor
 uniform vec4 kind[8];        // c; family; masking; Fresnel: 0 Schlick, 1 conductor, 2 dielectric, 3 scale, 4 tinted, 5 curve,
                              // 6 and 7 the surface of a coat, layered and refracted
-uniform vec4 radial[8];      // 0 or the number of nodes of the ratio; pieces of the excess, 0 for Student's; gamma; 1: retro
+uniform vec4 radial[8];      // 0 or the number of nodes of the ratio; pieces of the excess, 0 for Student's; gamma, or g of ABg; 1: retro
 uniform int coat;            // the lobe that is a coat over the others; -1: none
 uniform int diffuseKind;     // 0: none, 1: Lambert, 2: facets, 3: interfaced, 4: Oren-Nayar
 // Rows 2 l and 2 l + 1, column c: parameters of lobe l's Fresnel term in channel c; rows from 2 `lobes`: diffuse albedo,
@@ -102,6 +102,7 @@ void prepare(vec3 wi, vec3 wo) {
       ratioI = ratioOf(k, lobefit_w(i, s.x, s.y, s.z, s.w, c));
       ratioO = ratioOf(k, lobefit_w(ko, s.x, s.y, s.z, s.w, c));
     }
+    if (kind[k].y == 2.0) excess = radial[k].z;
     cosD[k] = dot(i, own);
     lobePart[k] = lobefit_lobe(i, ko, own, s.x, s.y, s.z, s.w, c, int(kind[k].y), int(kind[k].z), excess, ratioI, ratioO);
   }

@@ -365,7 +365,7 @@ function evaluate(pairs) {
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   return data.channels.map((_, c) => pairs.map((_, i) => view.getFloat32(4 * (c * n + i), true)));
 }
-const MASKINGS = ['smith-separable', 'smith-unclamped', 'smith-height', 'smith-height-direction', 'v-cavity', 'implicit', 'schlick-smith', 'kelemen'];
+const MASKINGS = ['smith-separable', 'smith-unclamped', 'smith-height', 'smith-height-direction', 'v-cavity', 'implicit', 'schlick-smith', 'kelemen', 'none'];
 const FRESNELS = ['schlick', 'conductor', 'dielectric', 'none', 'schlick-f82', 'curve', 'coat-layered', 'coat-refracted'];
 // The tables of the profiles belong to their numbers: made again when one moved.
 let profileKey = '', profiles = [];
@@ -373,7 +373,7 @@ function setProfiles() {
   const key = JSON.stringify(lobes.map(lobe => values.slice(lobe.first + 5, lobe.first + lobe.shapeParameters)));
   if (key === profileKey) return;
   profileKey = key;
-  profiles = lobes.map((lobe, k) => lobe.shapeParameters > 5 ? profileOf(k) : null);
+  profiles = lobes.map((lobe, k) => lobe.shapeParameters > 5 && lobe.family !== 2 ? profileOf(k) : null);
   const width = Math.max(1, ...profiles.map(p => p ? p.texels.length / 4 : 1)), texels = new Float32Array(4 * width * Math.max(1, lobes.length));
   profiles.forEach((p, k) => { if (p) texels.set(p.texels, 4 * width * k); });
   upload(3, width, Math.max(1, lobes.length), texels);
@@ -387,7 +387,7 @@ function setModel() {
     shape.push(f.x, f.y, f.a, f.b);
     kind.push(f.c, lobe.family, MASKINGS.indexOf(lobe.masking), FRESNELS.indexOf(lobe.fresnel));
     const p = profiles[k];
-    radial.push(p ? p.nodes : 0, p ? p.pieces : 0, p ? p.gamma : 0, lobe.retro ? 1 : 0);
+    radial.push(p ? p.nodes : 0, p ? p.pieces : 0, p ? p.gamma : lobe.family === 2 ? values[lobe.first + 5][0] : 0, lobe.retro ? 1 : 0);
     for (let c = 0; c < channels; ++c) {
       for (let i = 0; i < lobe.fresnelParameters; ++i) {
         const v = values[lobe.first + lobe.shapeParameters + i];

@@ -50,7 +50,8 @@ std::vector<Lobe> EveryLobe() {
   std::vector<Lobe> lobes;
   for (const Choice<Ndf>& ndf : NdfChoices()) {
     for (const Choice<Masking>& masking : MaskingChoices()) {
-      const Lobe lobe = {ndf.value, masking.value, Fresnel::kSchlick};
+      const Fresnel fresnel = masking.value == Masking::kNone ? Fresnel::kNone : Fresnel::kSchlick;
+      const Lobe lobe = {ndf.value, masking.value, fresnel};
       if (WhyNotEvaluable({{lobe}, Diffuse::kLambert}).empty()) lobes.push_back(lobe);
       Lobe retro = lobe;
       retro.direction = LobeDirection::kRetro;

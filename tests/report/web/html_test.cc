@@ -191,13 +191,35 @@ Material StudentOverOrenNayar(std::size_t channels) {
                    channels);
 }
 
+// The scatter of a polished surface beside a lobe of facets.
+Material Scatter(std::size_t channels) {
+  Model model;
+  model.lobes = {{Ndf::kAbg, Masking::kNone, Fresnel::kNone}, {Ndf::kGgx}};
+  return WithModel(model,
+                   {{0.05},
+                    {0.05},
+                    {0},
+                    {0},
+                    {0},
+                    {1.6},
+                    {0.8, 0.5, 0.3},
+                    {0.4},
+                    {0.4},
+                    {0},
+                    {0},
+                    {0},
+                    {0.1, 0.2, 0.1},
+                    {0.2, 0.1, 0.3}},
+                   channels);
+}
+
 // What the page is to show and to compute, for its test of itself.
 std::string TruthJson(const ReportData& data) {
   constexpr int kSize = 40;
   const ChannelColor to_color(data.measurement.channels);
-  const double exposure = SphereExposure(LightFitted(data.fitted, to_color, 128));
+  const double exposure = SphereExposure(LightSphere(Shown(data.fitted), to_color, data.channels(), 128));
   std::string bytes;
-  for (const auto& color : LightFitted(data.fitted, to_color, kSize).color) {
+  for (const auto& color : LightSphere(Shown(data.fitted), to_color, data.channels(), kSize).color) {
     const Rgb c = ToScreen(color, exposure);
     for (const std::uint8_t v : {c.r, c.g, c.b}) bytes.push_back(static_cast<char>(v));
   }
@@ -295,6 +317,7 @@ INSTANTIATE_TEST_SUITE_P(
                     PageCase{"in_plane_mono", 1, false, false, false},
                     PageCase{"two_beckmann_lobes_over_facets", 3, false, false, true, TwoBeckmannLobesOverFacets},
                     PageCase{"spectral_conductor_over_facets", 5, false, false, false, TiltedConductorOverFacets},
+                    PageCase{"scatter", 3, false, false, true, Scatter},
                     PageCase{"profile_student_and_retro", 3, false, false, true, ProfileStudentAndRetro},
                     PageCase{"spectral_student_over_oren_nayar", 4, false, false, true, StudentOverOrenNayar},
                     PageCase{"coated", 3, false, false, true, Coated}),

@@ -156,7 +156,7 @@ Target MaterialXTarget() {
           .description = "MaterialX 1.39: BSDF nodes",
           .load = "reference {name}.mtlx (USD: @{name}.mtlx@), material {id}",
           .rgb_only = true,
-          .refusal = RefuseOnlyRetro,
+          .refusal = RefuseForeignLobes,
           .carries = CarriesMaterialX,
           .own_model = HeightModel,
           .evaluate = EvaluateMaterialX,

@@ -141,7 +141,7 @@ Target MitsubaTarget() {
           .load =
               "<include filename=\"{name}.mitsuba.xml\"/>, then <ref id=\"{id}\"/>, for back faces within <bsdf "
               "type=\"twosided\">",
-          .refusal = RefuseOnlyRetro,
+          .refusal = RefuseForeignLobes,
           .carries = CarriesMitsuba,
           .own_model = SeparableModel,
           .evaluate = EvaluateMitsuba,

@@ -175,7 +175,7 @@ Target PbrtTarget() {
   return {.name = "pbrt",
           .description = "pbrt-v4 material: conductor and diffuse",
           .load = "Include \"{name}.pbrt\"",
-          .refusal = RefuseOnlyRetro,
+          .refusal = RefuseForeignLobes,
           .carries = CarriesPbrt,
           .own_model = HeightModel,
           .evaluate = EvaluatePbrt,
