@@ -45,6 +45,25 @@ TEST_F(FitVerb, RecoversTheTruthOfItsSample) {
   }
 }
 
+TEST_F(FitVerb, SaysTheScatterOfAMirrorAsStrayLightProgramsTakeIt) {
+  ASSERT_EQ(Shell("lobefit synth $SOURCE/samples/polished_mirror.toml --channels value --theta-i 5,30,60 --phi-i 0 "
+                  "--in-plane --detector-step 0.5 --out mirror.csv")
+                .exit_code,
+            0);
+  const ProgramResult result = Shell("lobefit fit mirror.csv --recipe abg --no-report");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, testing::HasSubstr("ABg: f_r = A / (B + |beta - beta0|^g)"));
+  const std::string document = ReadWholeFile(folder_ / "mirror.material.json");
+  EXPECT_TRUE(FollowsSchema(document));
+  const nlohmann::json abg = nlohmann::json::parse(document)["abg"];
+  EXPECT_NEAR(abg["lobes"][0]["A"].get<double>(), 1e-3, 2e-6);  // the sample's numbers have five digits
+  EXPECT_NEAR(abg["lobes"][0]["B"].get<double>(), 1e-4, 2e-7);
+  EXPECT_NEAR(abg["lobes"][0]["g"].get<double>(), 1.8, 1e-5);
+  // Of the unit disc: 2 pi A int r / (B + r^g) dr at normal incidence, less to the side.
+  ASSERT_EQ(abg["total_integrated_scatter"].size(), 3U);
+  EXPECT_NEAR(abg["total_integrated_scatter"][0]["share"][0].get<double>(), 0.0198, 2e-4);
+}
+
 TEST_F(FitVerb, TakesARecipeByNameOrFileAndAPartOfTheFile) {
   WriteWholeFile(folder_ / "mine.toml", "metric = \"cube-root\"\n[[lobe]]\nndf = \"ggx\"\n");
   const ProgramResult by_file =

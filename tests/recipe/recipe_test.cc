@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"[[lobe]]\nndf = \"ggx\"\nmasking = \"none\"\n",
                 "r.toml:1: masking none goes with ndf abg only, not with ggx"},
         BadCase{"[[lobe]]\nndf = \"abg\"\n[[lobe]]\nndf = \"ggx\"\nfresnel = \"coat-layered\"\n",
-                "r.toml:3: ndf abg is the scatter of the whole surface: no coat lies over it"},
+                "r.toml:1: ndf abg is the scatter of the whole surface: no coat lies over it"},
         BadCase{"[[lobe]]\nmasking = \"v-cavity\"\n",
                 "r.toml:1: masking v-cavity needs a lobe about the normal, ellipsoid may tilt; use ndf ggx-anisotropic "
                 "or beckmann-anisotropic, or a Smith masking"},
