@@ -9,70 +9,21 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/look.h"
 #include <fmt/format.h>
 
 #include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/io/read.h"
 #include "lobefit/report/panels/isotropic_lookup.h"
-#include "lobefit/report/panels/sphere.h"
 
 namespace lobefit {
 namespace {
-
-constexpr int kLightSize = 160, kSkySamples = 256;
-
-struct Look {
-  LitSphere light, sky;
-};
 
 struct Errors {
   double psnr_light = 0, psnr_sky = 0, color_light = 0, color_sky = 0, seconds = 0;
   int unreliable = 0;
 };
-
-// CIE L*a*b* of linear sRGB, D65.
-std::array<double, 3> Lab(const std::array<double, 3>& rgb) {
-  const std::array<double, 3> xyz = {
-      (0.4124 * rgb[0] + 0.3576 * rgb[1] + 0.1805 * rgb[2]) / 0.9505,
-      0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2],
-      (0.0193 * rgb[0] + 0.1192 * rgb[1] + 0.9505 * rgb[2]) / 1.089,
-  };
-  const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
-  return {116 * f(xyz[1]) - 16, 500 * (f(xyz[0]) - f(xyz[1])), 200 * (f(xyz[1]) - f(xyz[2]))};
-}
-
-// Peak signal-to-noise ratio of the linear, exposed pictures clipped at white, and the mean CIE 1976 colour difference;
-// seen from up to 75 degrees: further out the tables are known to be too dark, and the fits leave samples beyond 80
-// degrees out.
-std::pair<double, double> Compare(const LitSphere& table, const LitSphere& fit) {
-  const double exposure = SphereExposure(table);
-  double square = 0, difference = 0;
-  std::size_t pixels = 0;
-  for (std::size_t i = 0; i < table.color.size(); ++i) {
-    const double x = (static_cast<double>(i % static_cast<std::size_t>(table.size)) + 0.5) / table.size * 2 - 1,
-                 y = 1 - (static_cast<double>(i / static_cast<std::size_t>(table.size)) + 0.5) / table.size * 2;
-    if (std::hypot(x, y) > 0.966) continue;
-    const bool lit = table.color[i][0] + table.color[i][1] + table.color[i][2] > 0;
-    if (!lit || table.known[i] == 0) continue;
-    std::array<double, 3> a, b;
-    for (std::size_t k = 0; k < 3; ++k) {
-      a[k] = std::clamp(table.color[i][k] * exposure, 0.0, 1.0);
-      b[k] = std::clamp(fit.color[i][k] * exposure, 0.0, 1.0);
-      square += (a[k] - b[k]) * (a[k] - b[k]) / 3;
-    }
-    const std::array<double, 3> p = Lab(a), q = Lab(b);
-    difference += std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-    ++pixels;
-  }
-  const auto n = static_cast<double>(pixels);
-  return {10 * std::log10(n / std::max(square, 1e-12)), difference / n};
-}
-
-Look Render(const ShownBrdf& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color) {
-  return {LightSphere(brdf, to_color, 3, kLightSize),
-          SkySphere(brdf, lobe, to_color, 3, kSkySamples, HardwareThreads())};
-}
 
 Recipe RecipeOf(Ndf ndf, std::size_t lobes, Metric metric, Weighting weighting) {
   Recipe recipe = DefaultRecipe({std::vector<Lobe>(lobes, Lobe{ndf}), Diffuse::kLambert}, "study");
@@ -107,8 +58,8 @@ void Run(Ndf ndf, std::size_t lobes, const std::vector<std::string>& files) {
         reference = Render(Shown(lookup, 3), first, to_color);
       }
       const Look look = Render(Shown(fitted), first, to_color);
-      const auto [psnr_light, color_light] = Compare(reference.light, look.light);
-      const auto [psnr_sky, color_sky] = Compare(reference.sky, look.sky);
+      const auto [psnr_light, color_light] = CompareSpheres(reference.light, look.light);
+      const auto [psnr_sky, color_sky] = CompareSpheres(reference.sky, look.sky);
       all[k].push_back({psnr_light, psnr_sky, color_light, color_sky, seconds,
                         material.termination.converged && material.termination.determined ? 0 : 1});
       std::fprintf(stderr, "%s %s %s: %.2f %.2f dB, %.2f %.2f dE, %.2f s\n", file.c_str(),

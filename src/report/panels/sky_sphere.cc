@@ -47,25 +47,20 @@ struct SkyPoints {
   std::vector<Vec3> cosine;      // in the pixel's frame
   std::vector<Glowing> glowing;  // by exp(kGlow (cos - 1)) around the sun
 
-  SkyPoints(const SlopeFrame& lobe, int count, double glow_end, bool grey) {
+  // `each`: of each kind.
+  SkyPoints(const SlopeFrame& lobe, int each, double glow_end, bool grey) {
     const Vec3 sun = Sun(), sun_x = Normalized(Cross(Vec3{0, 0, 1}, sun)), sun_y = Cross(sun, sun_x);
-    for (int i = 0; i < count; ++i) {
-      const double u = (i / 3 + 0.5) / (count / 3.0),
-                   phi = 2 * kPi * std::fmod(0.5 + 0.6180339887498949 * (i / 3), 1.0);
-      if (i % 3 == 0) {
-        const double rho = std::sqrt(u / (1 - u));
-        const double x = lobe.slope_x + lobe.a * rho * std::cos(phi),
-                     y = lobe.slope_y + lobe.b * rho * std::cos(phi) + lobe.c * rho * std::sin(phi);
-        facets.push_back(Normalized(Vec3{-x, -y, 1.0}));
-      } else if (i % 3 == 1) {
-        const double r = std::sqrt(u);
-        cosine.push_back({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)});
-      } else {
-        const double along = 1 + std::log(1 - u * (1 - glow_end)) / kGlow, across = std::sqrt(1 - along * along);
-        const Vec3 world = along * sun + across * (std::cos(phi) * sun_x + std::sin(phi) * sun_y);
-        const double glow = GlowAt(world);
-        glowing.push_back({world, glow, Sky(world, glow, grey)});
-      }
+    for (int i = 0; i < each; ++i) {
+      const double u = (i + 0.5) / each, phi = 2 * kPi * std::fmod(0.5 + 0.6180339887498949 * i, 1.0);
+      const double x = std::cos(phi), y = std::sin(phi);
+      const double rho = std::sqrt(u / (1 - u)), r = std::sqrt(u);
+      facets.push_back(
+          Normalized(Vec3{-lobe.slope_x - lobe.a * rho * x, -lobe.slope_y - rho * (lobe.b * x + lobe.c * y), 1.0}));
+      cosine.push_back({r * x, r * y, std::sqrt(1 - u)});
+      const double along = 1 + std::log(1 - u * (1 - glow_end)) / kGlow, across = std::sqrt(1 - along * along);
+      const Vec3 world = along * sun + across * (x * sun_x + y * sun_y);
+      const double glow = GlowAt(world);
+      glowing.push_back({world, glow, Sky(world, glow, grey)});
     }
   }
 };
@@ -88,7 +83,8 @@ LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& coordinates, 
   const SlopeFrame lobe(coordinates);
   const bool grey = channels < 3;
   const double glow_end = std::exp(-2 * kGlow), glow_density = kGlow / (2 * kPi * (1 - glow_end));
-  const SkyPoints points(lobe, count, glow_end, grey);
+  const int each = count / 3;
+  const SkyPoints points(lobe, each, glow_end, grey);
   LitSphere sphere = DarkSphere(kSkySize);
   ParallelFor(kSkySize, threads, [&](std::size_t row) {
     std::vector<double> values(channels);
@@ -109,7 +105,7 @@ LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& coordinates, 
                      y2 = (-sum.y - sum.z * lobe.slope_y - lobe.b * y1) / lobe.c;
         const double t = sum.z * sum.z + y1 * y1 + y2 * y2;
         const double of_lobe = Dot(sum, sum) * sum.z / (2 * kPi * lobe.a * lobe.c * t * t);
-        arriving.weight.push_back(wi.z / ((of_lobe + wi.z * kInvPi + glow_density * glow) * (count / 3.0)));
+        arriving.weight.push_back(wi.z / ((of_lobe + wi.z * kInvPi + glow_density * glow) * each));
         arriving.radiance.push_back(radiance);
         const double all[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
         for (std::size_t j = 0; j < 6; ++j) arriving.d[j].push_back(all[j]);
