@@ -7,6 +7,7 @@
 
 #include "lobefit/fit/inference/clusters.h"
 #include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/objective/gains.h"
 #include "lobefit/fit/search/symmetric_eigen.h"
 
 namespace lobefit {
