@@ -387,17 +387,21 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
       // A fit that the noise has biased leaves residuals that look like noise of the value: that of the new fit tells
       // better.
       constexpr int kMostRounds = 4;
+      std::optional<NoiseBias> again;
       for (int round = 0; round < kMostRounds; ++round) {
         recipe.noise = NoiseForAsinh(bias->noise);
         found.emplace(recipe, *measurement, samples, incidences, options, &pool);
-        const std::optional<NoiseBias> again = predict();
+        again = predict();
         if (!again || IsNear(NoiseForAsinh(again->noise), recipe.noise) || round + 1 == kMostRounds) break;
         bias->noise = again->noise;
       }
       if (!needs_noise) remarks.push_back(ToSwitchRemark(*bias, before));
-    } else if (bias) {
+      bias = again;
+    }
+    if (bias) {
       AddBias(*bias, found->layout, found->best().u, &found->uncertainty);
-      const std::string remark = recipe.metric_given ? ToBiasRemark(*bias, recipe.metric) : "";
+      const bool chosen = recipe.metric_given || recipe.loss != Loss::kNone;
+      const std::string remark = chosen ? ToBiasRemark(*bias, recipe.metric, recipe.loss) : "";
       if (!remark.empty()) remarks.push_back(remark);
     }
   }

@@ -65,11 +65,23 @@ Measurement TurnedMeasurement(const Experiment& experiment, const Truth& truth, 
   return measurement;
 }
 
-Measurement MeasurementOf(const Experiment& experiment, const Truth& truth, std::uint64_t seed) {
+// What every trial measures before its noise, where all measure one material in one way: the means over both discs take
+// longer than ten fits.
+std::optional<Measurement> CommonTruth(const Experiment& experiment) {
+  if (experiment.range || experiment.noise.misalignment > 0) return std::nullopt;
+  const Truth& truth = experiment.truth;
+  return TrueMeasurement(experiment.directions, ChannelsNamed(truth.channels), BrdfOf(truth), experiment.noise,
+                         SmallestAlpha(truth));
+}
+
+Measurement MeasurementOf(const Experiment& experiment, const Truth& truth, std::uint64_t seed,
+                          const std::optional<Measurement>& common) {
   const std::uint64_t first = StreamSeed(seed, kNoise);
   const Noise noise = DrawnNoise(experiment.noise, first);
-  Measurement measurement = Synthesise(experiment.directions, ChannelsNamed(truth.channels), BrdfOf(truth), noise,
-                                       first, SmallestAlpha(truth));
+  Measurement measurement = common ? *common
+                                   : TrueMeasurement(experiment.directions, ChannelsNamed(truth.channels),
+                                                     BrdfOf(truth), noise, SmallestAlpha(truth));
+  AddNoise(noise, first, &measurement);
   if (experiment.turned) {
     measurement = Pool(
         {std::move(measurement), TurnedMeasurement(experiment, truth, noise, StreamSeed(seed, kTurnedNoise))}, false);
@@ -171,20 +183,30 @@ Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measure
   return trial;
 }
 
-Trial RunTrial(const Experiment& experiment, std::size_t index) {
+namespace {
+
+Trial RunTrialFrom(const std::optional<Measurement>& common, const Experiment& experiment, std::size_t index) {
   const std::uint64_t seed = StreamSeed(experiment.seed, index);
   Truth truth = experiment.truth;
   if (experiment.range) {
     RandomNumbers random(StreamSeed(seed, kMaterial));
     truth = DrawMaterial(*experiment.range, truth, &random);
   }
-  return CompareWithTruth(experiment, truth, MeasurementOf(experiment, truth, seed));
+  return CompareWithTruth(experiment, truth, MeasurementOf(experiment, truth, seed, common));
+}
+
+}  // namespace
+
+Trial RunTrial(const Experiment& experiment, std::size_t index) {
+  return RunTrialFrom(std::nullopt, experiment, index);
 }
 
 void RunTrials(const Experiment& experiment, const std::vector<std::size_t>& indices, int threads,
                const std::function<void(std::size_t index, Trial trial)>& done, const std::atomic<bool>& stop) {
+  if (indices.empty() || stop) return;
+  const std::optional<Measurement> common = CommonTruth(experiment);
   ParallelFor(indices.size(), threads, [&](std::size_t k) {
-    if (!stop) done(indices[k], RunTrial(experiment, indices[k]));
+    if (!stop) done(indices[k], RunTrialFrom(common, experiment, indices[k]));
   });
 }
 

@@ -300,6 +300,8 @@ TEST(Fit, ManyChannelsKeepErrorsAndTheCovarianceOfShapes) {
   EXPECT_NEAR(std::sqrt(material.covariance[0]), material.parameters[0].standard_error[0], 1e-15);
   EXPECT_NEAR(std::sqrt(material.covariance[8]), RadiansToDegrees(material.parameters[4].standard_error[0]), 1e-12);
   for (const double error : material.parameters[5].standard_error) EXPECT_GT(error, 0);
+  EXPECT_TRUE(material.misfit->tested);
+  EXPECT_FALSE(material.misfit->flagged) << material.misfit->probability;
   EXPECT_NE(material.remarks.back().find("the covariance of 423 numbers"), std::string::npos)
       << material.remarks.back();
 }

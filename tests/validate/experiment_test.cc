@@ -49,6 +49,15 @@ TEST(Experiment, TrialsDoNotDependOnThreadsOrOnHowManyThereAre) {
   EXPECT_NE(test::Run(experiment, 1)[0].value, one[0].value);
 }
 
+// What all trials measure before their noise is made once, unless a trial draws its material or how the sample stands.
+TEST(Experiment, ATrialOfManyIsTheOneAlone) {
+  for (const char* noise : {"multiplicative=0.05,drift=0.02,aperture=1", "multiplicative=0.05,misalignment=0.2"}) {
+    const Experiment experiment = test::BrushedExperiment(noise);
+    const std::vector<Trial> trials = test::Run(experiment, 2);
+    for (std::size_t i = 0; i < trials.size(); ++i) EXPECT_EQ(trials[i].value, RunTrial(experiment, i).value) << noise;
+  }
+}
+
 TEST(Experiment, NoiseFreeTrialsRecoverTheTruth) {
   const Trial trial = RunTrial(test::BrushedExperiment("none"), 0);
   EXPECT_TRUE(trial.converged);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 namespace lobefit {
 
@@ -45,6 +46,8 @@ class ClusterTally {
  private:
   const Eigen::MatrixXd* numbers_;
   bool exact_;
+  // Of `numbers`, without `exact_`: a number of one of many channels depends on the shape and its own channel only.
+  Eigen::SparseMatrix<double> sparse_;
   Eigen::MatrixXd filling_;
   // With h = z^T curvature z the cluster's share in the variance of a number, sums of h and h^2; and without `exact_`
   // of e = h^2 / (1 - h) and e^2, with h as a part of z^T z.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "lobefit/fit/inference/noisy_loss.h"
 #include "lobefit/fit/search/descent.h"
 
 namespace lobefit {
@@ -18,12 +19,46 @@ bool IsNearFloor(const NoiseModel& noise, double v) { return v < 3 * std::sqrt(n
 
 constexpr const char* kBiasPhrase = " is biased by the noise of these values (";
 
+// The means of the loss over the noise of samples of a problem: of some of them, spread over all.
+class ScoresOfLoss {
+ public:
+  ScoresOfLoss(const Problem& problem, const KernelModel& kernel, const Samples& samples, const NoiseModel& noise,
+               const std::vector<std::vector<double>>& f_r)
+      : problem_(problem),
+        samples_(samples),
+        f_r_(f_r),
+        loss_(kernel.transform, kernel.loss, kernel.loss_scale, noise),
+        step_(std::max<std::size_t>(1, problem.size() / kMost)) {}
+
+  // [channel] of sample i; all 0 for those that are passed over.
+  std::vector<MeanScore> Of(std::size_t i) const {
+    if (i % step_ != 0) return std::vector<MeanScore>(f_r_.size());
+    std::vector<double> v;
+    for (const std::vector<double>& f : f_r_) v.push_back(f[i] * samples_.wi_z[i]);
+    return loss_.Evaluate(v, std::sqrt(problem_.Weight(i)));
+  }
+
+ private:
+  static constexpr std::size_t kMost = 4000;
+  const Problem& problem_;
+  const Samples& samples_;
+  const std::vector<std::vector<double>>& f_r_;
+  NoisyLoss loss_;
+  std::size_t step_;
+};
+
 // J^T W (T'' s^2 / 2), in the columns of `shift` with the s of floor and counts and with that of all noise, and J^T W J
-// of the samples.
-void AddShift(const Problem& problem, const Layout& layout, const KernelModel& kernel, const Samples& samples,
+// of the samples. With a loss: the first with the mean of its curvature as a further weight, in place of the second the
+// mean of its score.
+void AddShift(const Problem& problem, const Layout& layout, const KernelModel& model, const Samples& samples,
               const NoiseModel& noise, const std::vector<std::vector<double>>& f_r, ArrowMatrix* hessian,
               Eigen::MatrixXd* shift) {
   constexpr std::size_t kPiece = 256;
+  std::optional<ScoresOfLoss> scores;
+  if (model.loss != Loss::kNone) scores.emplace(problem, model, samples, noise, f_r);
+  KernelModel kernel = model;
+  kernel.loss = Loss::kNone;
+  std::vector<std::vector<MeanScore>> means(kPiece);  // [sample][channel], with a loss
   std::vector<std::vector<double>> columns;
   std::vector<double> level(kPiece), curvature(kPiece), deviation(kPiece);
   const std::vector<double> one(kPiece, 1.0);
@@ -32,6 +67,7 @@ void AddShift(const Problem& problem, const Layout& layout, const KernelModel& k
   for (std::size_t begin = 0; begin < problem.size(); begin += kPiece) {
     const std::size_t count = std::min(problem.size(), begin + kPiece) - begin;
     Columns(problem.kernel_samples(), kernel, begin, begin + count, &columns);
+    for (std::size_t i = 0; scores && i < count; ++i) means[i] = scores->Of(begin + i);
     for (std::size_t c = 0; c < columns.size(); ++c) {
       for (std::size_t i = 0; i < count; ++i) {
         const double v = f_r[c][begin + i] * samples.wi_z[begin + i];
@@ -43,13 +79,19 @@ void AddShift(const Problem& problem, const Layout& layout, const KernelModel& k
                          width = static_cast<Eigen::Index>(columns[c].size() / count);
       const Eigen::Map<const Eigen::MatrixXd> j(columns[c].data(), rows, width);
       Eigen::MatrixXd moved(rows, 2);
+      Eigen::VectorXd weight = Eigen::VectorXd::Ones(rows);
       for (std::size_t i = 0; i < count; ++i) {
         const double half = std::sqrt(problem.Weight(begin + i)) * 0.5 * curvature[i];
         moved(static_cast<Eigen::Index>(i), 0) =
             half * noise.DarkVarianceAt(f_r[c][begin + i] * samples.wi_z[begin + i]);
         moved(static_cast<Eigen::Index>(i), 1) = half * deviation[i] * deviation[i];
+        if (!scores) continue;
+        const MeanScore& mean = means[i][c];
+        weight(static_cast<Eigen::Index>(i)) = mean.curvature;
+        moved(static_cast<Eigen::Index>(i), 0) *= mean.curvature;
+        moved(static_cast<Eigen::Index>(i), 1) = -mean.score;
       }
-      const Eigen::MatrixXd gram = j.transpose() * j, pull = j.transpose() * moved;
+      const Eigen::MatrixXd gram = j.transpose() * weight.asDiagonal() * j, pull = j.transpose() * moved;
       sums.gram[c].resize(static_cast<std::size_t>(width * (width + 1) / 2), 0.0);
       double* entry = sums.gram[c].data();
       for (Eigen::Index a = 0; a < width; ++a) {
@@ -194,15 +236,22 @@ std::string ToSwitchRemark(const NoiseBias& bias, Metric before) {
                      name);
 }
 
-std::string ToBiasRemark(const NoiseBias& bias, Metric metric) {
+std::string ToBiasRemark(const NoiseBias& bias, Metric metric, Loss loss) {
   const NoiseBias::Largest& largest = bias.of_all;
   if (!(largest.errors > kMostErrors)) return "";
+  if (loss != Loss::kNone) {
+    return fmt::format(
+        "loss {} of metric {}{}{}): {} by about {:.2g} standard errors, which the errors hold; a larger scale is less",
+        NameOf(LossChoices(), loss), RowOf(metric).name, kBiasPhrase, NoiseInWords(bias.noise), largest.parameter,
+        largest.errors);
+  }
   return fmt::format("metric {}{}{}): {} by about {:.2g} standard errors; --metric asinh is not", RowOf(metric).name,
                      kBiasPhrase, NoiseInWords(bias.noise), largest.parameter, largest.errors);
 }
 
 bool IsBiasRemark(const std::string& remark) {
-  return remark.starts_with("metric ") && remark.find(kBiasPhrase) != std::string::npos;
+  return (remark.starts_with("metric ") || remark.starts_with("loss ")) &&
+         remark.find(kBiasPhrase) != std::string::npos;
 }
 
 }  // namespace lobefit

@@ -1,4 +1,4 @@
-// What the noise of the readings does to a fit through the curve of its metric.
+// What the noise of the readings does to a fit through the curve of its metric and through its loss.
 #pragma once
 
 #include <optional>
@@ -31,8 +31,10 @@ struct NoiseBias {
 // To first order noise of standard deviation s moves the mean of a transformed reading by T''(v) s^2 / 2, and the
 // parameters by d = (J^T J)^-1 J^T (T'' s^2 / 2). What noise of the value does is the same share of every value,
 // rho^2 / 3 under the cube root: no reason for another curve, so that the floor's part is told apart, but more than a
-// standard error where samples are many. Good while v > 2 s: below, v is taken as 2 s. `covariance` is that of the
-// solver's coordinates. Nothing where the noise cannot be estimated.
+// standard error where samples are many. Good while v > 2 s: below, v is taken as 2 s. With a loss what moves them is
+// the mean of its score (noisy_loss.h), which is not 0 where the noise of a residual is skewed, whatever the metric;
+// outliers that are more often too high than too low are not in it. `covariance` is that of the solver's coordinates.
+// Nothing where the noise cannot be estimated.
 std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vector<double>& u,
                                           const Eigen::MatrixXd& covariance, const Samples& samples,
                                           const Incidences& incidences, ThreadPool* pool);
@@ -55,8 +57,8 @@ bool IsNear(const NoiseModel& a, const NoiseModel& b);
 // "6.5 % of the readings are negative (noise floor 0.01/sr, noise 5 % of the value): fitted with metric asinh, knee
 // 0.2/sr; cube-root would be ..."
 std::string ToSwitchRemark(const NoiseBias& bias, Metric before);
-// For a metric that the user gave; empty where it is biased by no more than half a standard error.
-std::string ToBiasRemark(const NoiseBias& bias, Metric metric);
+// For a metric that the user gave, or a loss; empty where it is biased by no more than half a standard error.
+std::string ToBiasRemark(const NoiseBias& bias, Metric metric, Loss loss);
 // Whether a remark is one of ToBiasRemark.
 bool IsBiasRemark(const std::string& remark);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "lobefit/fit/metric/loss.h"
 #include "lobefit/math/vec.h"
@@ -79,6 +80,54 @@ void AddIncidence(const Samples& samples, const std::vector<std::uint32_t>& memb
       pairs->push_back({std::sqrt(level / squares), mean / squares, std::fabs(e) / std::sqrt(squares)});
     }
   }
+}
+
+std::vector<PseudoResidual> NeighbouringPairs(const Samples& samples, const Incidences& incidences,
+                                              const std::vector<std::vector<double>>& f_r) {
+  std::vector<std::vector<std::uint32_t>> members(incidences.wi.size());
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    members[incidences.group[i]].push_back(static_cast<std::uint32_t>(i));
+  std::erase_if(members, [](const std::vector<std::uint32_t>& m) { return m.size() <= kNeighbours; });
+  std::size_t looked_at = 0;
+  for (const auto& m : members) looked_at += std::min(m.size(), kMostOfIncidence);
+  const std::size_t stride = (looked_at + kMostSamples - 1) / kMostSamples;
+  std::vector<PseudoResidual> pairs;
+  for (std::size_t g = 0; g < members.size(); g += stride) AddIncidence(samples, members[g], f_r, &pairs);
+  return pairs;
+}
+
+// Pairs of readings of the same directions in the same file, which no model enters but for the level: (m1 - m2) /
+// sqrt(2). Empty where there are few, or where more than half agree exactly, copies that tell of no noise.
+std::vector<PseudoResidual> RepeatedPairs(const Samples& samples, const Incidences& incidences,
+                                          const std::vector<std::vector<double>>& f_r) {
+  constexpr std::size_t kFewestRepeats = 50;
+  constexpr double kSame = 1e-9;
+  const auto file = [&](std::uint32_t i) { return samples.file.empty() ? 0 : samples.file[i]; };
+  std::vector<std::uint32_t> order(samples.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    if (incidences.group[a] != incidences.group[b]) return incidences.group[a] < incidences.group[b];
+    if (file(a) != file(b)) return file(a) < file(b);
+    return samples.wo_x[a] != samples.wo_x[b] ? samples.wo_x[a] < samples.wo_x[b] : samples.wo_y[a] < samples.wo_y[b];
+  });
+  std::vector<PseudoResidual> pairs;
+  std::size_t found = 0, equal = 0;
+  for (std::size_t k = 0; k + 1 < order.size(); ++k) {
+    const std::uint32_t i = order[k], j = order[k + 1];
+    if (incidences.group[i] != incidences.group[j] || file(i) != file(j)) continue;
+    if (Norm(samples.wo(i) - samples.wo(j)) > kSame || Norm(samples.wi(i) - samples.wi(j)) > kSame) continue;
+    ++found;
+    ++k;  // a reading is of one pair
+    for (std::size_t c = 0; c < f_r.size(); ++c) {
+      const double v = f_r[c][i] * samples.wi_z[i], w = f_r[c][j] * samples.wi_z[j];
+      const double gap = (samples.values[c][i] - samples.values[c][j]) * samples.wi_z[i];
+      equal += gap == 0 ? 1 : 0;
+      pairs.push_back(
+          {std::sqrt(0.5 * (v * v + w * w)), 0.5 * (std::fabs(v) + std::fabs(w)), std::fabs(gap) / std::sqrt(2.0)});
+    }
+  }
+  if (found < kFewestRepeats || 2 * equal > pairs.size()) pairs.clear();
+  return pairs;
 }
 
 struct Bin {
@@ -165,15 +214,8 @@ NoiseModel WithPoisson(const std::vector<Bin>& bins, const NoiseModel& without) 
 
 std::optional<NoiseModel> EstimateNoise(const Samples& samples, const Incidences& incidences,
                                         const std::vector<std::vector<double>>& f_r) {
-  std::vector<std::vector<std::uint32_t>> members(incidences.wi.size());
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    members[incidences.group[i]].push_back(static_cast<std::uint32_t>(i));
-  std::erase_if(members, [](const std::vector<std::uint32_t>& m) { return m.size() <= kNeighbours; });
-  std::size_t looked_at = 0;
-  for (const auto& m : members) looked_at += std::min(m.size(), kMostOfIncidence);
-  const std::size_t stride = (looked_at + kMostSamples - 1) / kMostSamples;
-  std::vector<PseudoResidual> pairs;
-  for (std::size_t g = 0; g < members.size(); g += stride) AddIncidence(samples, members[g], f_r, &pairs);
+  std::vector<PseudoResidual> pairs = RepeatedPairs(samples, incidences, f_r);
+  if (pairs.empty()) pairs = NeighbouringPairs(samples, incidences, f_r);
   if (pairs.size() < kFewest) return std::nullopt;
   std::vector<Bin> bins = Bins(std::move(pairs));
   double highest = 0;

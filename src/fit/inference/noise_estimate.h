@@ -19,6 +19,9 @@ namespace lobefit {
 // the mean of v weighted alike, where that halves what they leave and gains more than 3 standard deviations. A sixth to
 // a quarter of a misfit of 10 % remains in `relative` where samples are 15 degrees apart.
 //
+// Where 50 directions or more were read twice in one file, the differences of the two readings are taken in place of
+// those: no misfit enters them. A file's rows that are copies of each other are no readings.
+//
 // f_r[channel][sample] of the model. Nothing where fewer than 40 samples have neighbours, or nothing but rounding is
 // left. At most some 4000 samples are looked at, spread over the incidences.
 std::optional<NoiseModel> EstimateNoise(const Samples& samples, const Incidences& incidences,

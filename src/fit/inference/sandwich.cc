@@ -7,6 +7,7 @@
 
 #include "lobefit/fit/inference/clusters.h"
 #include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/objective/gains.h"
 #include "lobefit/fit/search/symmetric_eigen.h"
 
 namespace lobefit {
@@ -278,7 +279,8 @@ Filling FillSandwich(const Problem& problem, const Layout& layout, const std::ve
   Filling filling = {Symmetric(samples) + bread.prior_of_gains + bread.prior_of_coordinates, Symmetric(tally.filling()),
                      tally.DegreesOfFreedom()};
   // The variance that a prior gives is known, not estimated from clusters.
-  for (Eigen::Index k = 0; k < numbers.cols(); ++k) {
+  const Eigen::Index with_prior = bread.prior_of_coordinates.isZero(0) ? 0 : numbers.cols();
+  for (Eigen::Index k = 0; k < with_prior; ++k) {
     const double known = numbers.col(k).dot(bread.prior_of_coordinates * numbers.col(k));
     const double estimated = numbers.col(k).dot(filling.clusters * numbers.col(k));
     if (known > 0 && estimated > 0) filling.freedom(k) *= (1 + known / estimated) * (1 + known / estimated);

@@ -4,12 +4,25 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/SparseCore>
+
 #include "lobefit/fit/inference/bread.h"
 #include "lobefit/fit/inference/sandwich.h"
 #include "lobefit/fit/objective/gains.h"
 
 namespace lobefit {
 namespace {
+
+// Rows of many channels depend on the shape and their own channel only: dense products took half of the time of a fit
+// with 800 of them.
+Eigen::SparseMatrix<double, Eigen::RowMajor> SparseOf(const Eigen::MatrixXd& rows) { return rows.sparseView(); }
+
+// rows middle rows^T.
+Eigen::MatrixXd Spread(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& middle) {
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> sparse = SparseOf(rows);
+  const Eigen::MatrixXd half = sparse * middle;
+  return sparse * half.transpose();
+}
 
 bool IsFinite(const Eigen::MatrixXd& jacobian, Eigen::Index row) { return jacobian.row(row).allFinite(); }
 
@@ -42,18 +55,18 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
   // Entry by entry, d entry / d whitened coordinate.
   Eigen::MatrixXd entries = jacobian;
   for (const Eigen::Index row : without_error) entries.row(row).setZero();
-  entries *= bread.whitening;
+  entries = (SparseOf(entries) * bread.whitening).eval();
   const Filling filling =
       FillSandwich(problem, layout, u, bread, incidences, entries.rowwise().normalized().transpose(), pool);
   const auto spread = [&](const Eigen::MatrixXd& middle) {
-    Eigen::MatrixXd covariance = entries * middle * entries.transpose();
+    Eigen::MatrixXd covariance = Spread(entries, middle);
     for (const Eigen::Index row : without_error) {
       covariance.row(row).setConstant(kNan);
       covariance.col(row).setConstant(kNan);
     }
     return covariance;
   };
-  result.of_coordinates = bread.whitening * filling.samples * bread.whitening.transpose();
+  result.of_coordinates = Spread(bread.whitening, filling.samples);
   result.covariance = spread(filling.samples);
   if (result.has_clusters) {
     result.clustered = spread(filling.clusters);
@@ -64,8 +77,9 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
   for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
     result.freedom.push_back(result.has_clusters ? filling.freedom(row) : kNan);
     result.independent_freedom.push_back(INFINITY);
+    if (!scatter_estimated) continue;
     const double variance = entries.row(row) * filling.samples * entries.row(row).transpose();
-    if (!scatter_estimated || !(variance > 0)) continue;
+    if (!(variance > 0)) continue;
     const double of_gains = entries.row(row) * bread.prior_of_gains * entries.row(row).transpose();
     for (double* freedom : {&result.freedom.back(), &result.independent_freedom.back()})
       *freedom = FreedomUnderDrift(*freedom, *problem.gains(), std::min(1.0, of_gains / variance));

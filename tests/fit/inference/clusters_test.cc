@@ -36,6 +36,23 @@ TEST(InverseRoot, ADirectionOfOneClusterAloneIsLeftOut) {
   EXPECT_NEAR(values(2), 1 / std::sqrt(0.5), 1e-12);
 }
 
+// Channels that meet in a border of five only, as those of a spectrum: the same as by the eigenvectors of the whole.
+TEST(InverseRoot, ZerosOfManyChannelsAreOnlyPassedOver) {
+  constexpr Eigen::Index kBorder = 5, kSize = 225;
+  Matrix curvature = Matrix::Zero(kSize, kSize);
+  for (Eigen::Index i = 0; i < kSize; ++i) {
+    const auto x = static_cast<double>(i);
+    curvature(i, i) = 0.2 + 0.1 * std::sin(x);
+    for (Eigen::Index k = 0; k < kBorder; ++k) {
+      if (i > k) curvature(i, k) = curvature(k, i) = 0.01 * std::cos(3 * x + static_cast<double>(k));
+    }
+  }
+  const Eigen::VectorXd score = Eigen::VectorXd::LinSpaced(kSize, -1, 2);
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix::Identity(kSize, kSize) - curvature);
+  ASSERT_GT(eigen.eigenvalues()(0), 0.3);
+  EXPECT_LT((InverseRootTimes(curvature, score) - eigen.operatorInverseSqrt() * score).norm(), 1e-12 * score.norm());
+}
+
 // G clusters that are all alike: G - 1 degrees of freedom, by the exact formula and by the one for many.
 TEST(DegreesOfFreedom, AreOneLessThanTheNumberOfEqualClusters) {
   const Matrix numbers = Matrix::Identity(4, 4);
@@ -45,6 +62,29 @@ TEST(DegreesOfFreedom, AreOneLessThanTheNumberOfEqualClusters) {
     for (std::size_t k = 0; k < clusters; ++k) tally.Add({Matrix::Identity(4, 4) / g, Eigen::VectorXd::Ones(4)});
     for (const double freedom : tally.DegreesOfFreedom()) EXPECT_NEAR(freedom, g - 1, 1e-9 * g) << clusters;
     EXPECT_NEAR(tally.filling()(3, 0), g / (1 - 1 / g), 1e-9 * g);
+  }
+}
+
+// Of many clusters, by the definition (clusters.h), for numbers of two coordinates of three.
+TEST(DegreesOfFreedom, OfManyClustersFollowTheDefinition) {
+  constexpr std::size_t kClusters = 101;
+  Matrix numbers(3, 2);
+  numbers << 0.6, 0, 0, 0.28, -0.8, 0.96;
+  ClusterTally tally(numbers, kClusters);
+  Eigen::ArrayXXd h(kClusters, 2);
+  for (std::size_t k = 0; k < kClusters; ++k) {
+    const auto x = static_cast<double>(k);
+    Matrix curvature = Matrix::Identity(3, 3) * (0.01 + 0.005 * std::sin(x));
+    curvature(0, 2) = curvature(2, 0) = 0.004 * std::cos(x);
+    curvature(1, 2) = curvature(2, 1) = -0.003 * std::cos(2 * x);
+    tally.Add({curvature, Eigen::VectorXd::Ones(3)});
+    for (Eigen::Index n = 0; n < 2; ++n)
+      h(static_cast<Eigen::Index>(k), n) = numbers.col(n).dot(curvature * numbers.col(n));
+  }
+  for (Eigen::Index n = 0; n < 2; ++n) {
+    const Eigen::ArrayXd e = h.col(n).square() / (1 - h.col(n));
+    const double sum = h.col(n).sum(), products = e.sum() * e.sum() - e.square().sum();
+    EXPECT_NEAR(tally.DegreesOfFreedom()(n), sum * sum / (h.col(n).square().sum() + products), 1e-10) << n;
   }
 }
 

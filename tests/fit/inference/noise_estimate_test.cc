@@ -69,6 +69,34 @@ TEST(EstimateNoise, FindsCountingNoiseWhereThereIsAndNoneWhereNot) {
   EXPECT_LE(false_alarms, 1);
 }
 
+// A model that is off by 20 % from one direction to the next looks like noise to neighbours, not to repeated readings;
+// rows that are only copied tell nothing.
+TEST(EstimateNoise, RepeatedReadingsTellItFromMisfit) {
+  const NoiseModel noise = {0.005, 0.03};
+  std::vector<std::vector<double>> truth, again;
+  Measurement once = Noisy(noise, 1, 15, &truth);
+  const Measurement twice = Noisy(noise, 2, 15, &again);
+  const std::size_t count = once.samples.size();
+  const auto with = [&](const Samples& other) {
+    Measurement both = once;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double f = other.values[0][i];
+      both.samples.Append(other.wi(i), other.wo(i), &f, 0);
+    }
+    return both;
+  };
+  std::vector<std::vector<double>> rough(1);
+  for (std::size_t i = 0; i < 2 * count; ++i)
+    rough[0].push_back(truth[0][i % count] * (1 + 0.2 * std::sin(137.0 * static_cast<double>(i % count))));
+  const auto estimate = [&](const Measurement& measurement) {
+    return EstimateNoise(measurement.samples, GroupByIncidence(measurement), rough).value();
+  };
+  const NoiseModel repeated = estimate(with(twice.samples)), copied = estimate(with(once.samples));
+  EXPECT_NEAR(repeated.floor, 0.005, 0.001);
+  EXPECT_NEAR(repeated.relative, 0.03, 0.007);
+  EXPECT_GT(copied.relative, 0.08);
+}
+
 TEST(EstimateNoise, ExactValuesAndFewSamplesHaveNone) {
   std::vector<std::vector<double>> truth;
   const Measurement exact = Noisy({0, 0}, 1, 15, &truth);

@@ -10,6 +10,7 @@
 namespace lobefit {
 namespace {
 
+// Catches Huber's - a^2 left out, one loss in place of another, a second derivative that is off.
 TEST(EvaluateLoss, IsCeresToTheSecondDerivative) {
   for (const Choice<Loss>& choice : LossChoices()) {
     for (const double scale : {0.01, 0.3, 7.0}) {

@@ -15,7 +15,8 @@ Samples Readings(const std::vector<double>& values, const std::vector<double>& s
   return samples;
 }
 
-// Inverse variance of the residual, tempered by the median one.
+// Inverse variance of the residual, tempered by the median one. Catches the weights of another metric, those at the
+// reading and those without its slope.
 TEST(SigmaWeights, AreThoseOfTheMetricAtTheModelsValue) {
   const Samples samples = Readings({0.2, 1.0, 4.0}, {0.01, 0.02, 0.3}, 0.5);
   const std::vector<std::vector<double>> model = {{0.3, 0.9, 5.0}};

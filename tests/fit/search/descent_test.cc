@@ -216,6 +216,7 @@ TEST(Descend, GoesOnThroughABentValley) {
   EXPECT_LT((descent.u - Eigen::Vector2d(1, 1)).norm(), 1e-6);
 }
 
+// Catches a coordinate that is held at a bound although the cost falls inwards.
 TEST(IsMinimum, SeesAnInwardGradientAtABoundAndNamesABetterPoint) {
   const Curve3 curve(2);
   const BoundedObjective objective = curve.Within(Eigen::Vector3d(0, -2, -1), Eigen::Vector3d(3, 0, 0.5));

@@ -90,7 +90,8 @@ TEST(DistinctMinima, APointWithinTwoStandardErrorsIsTheSame) {
   }
 }
 
-// A descent that stopped a little above the minimum near it is not the minimum found again.
+// A descent that stopped a little above the minimum near it is not the minimum found again. Catches a tolerance of the
+// costs of 1e-2 in place of 1e-5.
 TEST(DistinctMinima, AnotherCostIsAnotherMinimum) {
   const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.2, 0.2, 0, 0, 0);
   Ends ends(truth, StandardLayout(), DefaultRecipe(truth.model, "ggx"));
