@@ -143,6 +143,14 @@ Recipe ThroughInstrument(const Recipe& recipe, const Measurement& measurement) {
   RequireHalfAngle("detector", instrument.detector, instrument.detector_prior, measurement.source);
   if (!instrument.mean && stated.plain_mean)
     instrument.mean = *stated.plain_mean ? ApertureMean::kPlain : ApertureMean::kFlux;
+  if (!instrument.drift && stated.drift) instrument.drift = DriftRecipe{stated.drift->sd};
+  if (!instrument.alignment && stated.alignment) {
+    instrument.alignment = AlignmentRecipe();
+    instrument.alignment->prior = *stated.alignment;
+  }
+  instrument.offset = instrument.offset || stated.offset.value_or(false);
+  if (!through.noise.IsKnown() && stated.noise)
+    through.noise = {stated.noise->floor, stated.noise->relative, stated.noise->poisson};
   RequireRectangle(through, measurement.source);
   const Incidences incidences = GroupByIncidence(measurement);
   RequireIncidences(through, measurement, incidences);

@@ -11,6 +11,7 @@
 #include "lobefit/math/vec.h"
 #include "lobefit/measurement/left_out.h"
 #include "lobefit/measurement/set_aside.h"
+#include "lobefit/measurement/stated_instrument.h"
 
 namespace lobefit {
 
@@ -64,16 +65,6 @@ struct Samples {
 
 // A direction of a sample: the one to the light (wi) or the one to the viewer (wo).
 enum class Beam { kLight, kViewer };
-
-// What a file states of the instrument that made it; empty: it does not.
-struct StatedInstrument {
-  std::optional<double> source, detector;  // half angles of the discs that they fill, radians
-  // With which uncertainty (a standard deviation, radians) these are stated.
-  std::optional<double> source_prior, detector_prior;
-  std::optional<double> detector_across;  // of a rectangular detector, across the meridian
-  std::optional<bool> plain_mean;         // a value is the mean of f_r, else of the flux over the mean cosines
-  bool operator==(const StatedInstrument&) const = default;
-};
 
 struct Measurement {
   void LeaveOut(const Vec3& wi, const Vec3& wo, LeftOutReason reason) {

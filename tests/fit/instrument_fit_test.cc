@@ -186,6 +186,42 @@ TEST(OffsetFit, IsFoundWhereIncidencesDiffer) {
   EXPECT_NEAR(Value(material, kAlphaX), 0.35, 1e-5);
 }
 
+// A file's own words do what the recipe's do, which come first.
+TEST(InstrumentFit, IsWhatTheFileStates) {
+  const SyntheticCase truth = Brushed();
+  Noise noise;
+  noise.multiplicative = 0.03;
+  noise.drift = 0.05;
+  Measurement plain = Measured(truth, Coarse(), noise, 4), stating = plain, both = plain;
+  Recipe recipe = Log(truth), asked = recipe;
+  asked.instrument.drift = DriftRecipe{0.05};
+  asked.instrument.alignment = AlignmentRecipe();
+  stating.instrument.drift = StatedDrift{0.05};
+  stating.instrument.alignment = AlignmentRecipe().prior;
+  both.instrument.drift = StatedDrift{};
+  both.instrument.alignment = DegreesToRadians(3);
+  const Material by_recipe = Fit(asked, {}, &plain), by_file = Fit(recipe, {}, &stating),
+                 by_both = Fit(asked, {}, &both);
+  ASSERT_TRUE(by_file.instrument && by_file.instrument->drift);
+  EXPECT_FALSE(by_file.instrument->drift->estimated);
+  EXPECT_EQ(by_file.instrument->alignment.size(), by_recipe.instrument->alignment.size());
+  for (std::size_t i = 0; i < by_recipe.parameters.size(); ++i) {
+    EXPECT_EQ(Value(by_file, i), Value(by_recipe, i)) << i;
+    EXPECT_EQ(Value(by_both, i), Value(by_recipe, i)) << i;
+  }
+  // An offset, and the noise that gives asinh its knee.
+  noise.drift = 0;
+  noise.additive = 0.002;
+  Measurement straddling = Measured(truth, Coarse(), noise, 5);
+  straddling.instrument.offset = true;
+  straddling.instrument.noise = StatedNoise{0.002, 0.03, 0};
+  recipe.metric = Metric::kCubeRoot;
+  recipe.metric_given = false;
+  const Material with_noise = Fit(recipe, {}, &straddling);
+  EXPECT_EQ(with_noise.metric, "asinh");
+  EXPECT_EQ(with_noise.instrument->offset.size(), 1U);
+}
+
 TEST(InstrumentFit, SaysWhyItRefuses) {
   const SyntheticCase truth = Brushed();
   GoniometerLayout one = Coarse({0});

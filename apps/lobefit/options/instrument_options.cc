@@ -6,6 +6,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/text/text.h"
 #include "lobefit/math/vec.h"
+#include "lobefit/measurement/stated_instrument.h"
 
 namespace lobefit {
 
@@ -52,6 +53,10 @@ void InstrumentOptions::AddTo(CLI::App* app, bool with_mean) {
       ->check(Within(1e-3, kMostAlignmentDeg))
       ->group(group);
   app->add_flag("--offset", offset_, "readings may be too high by a constant of each channel")->group(group);
+  app->add_option("--noise-model", noise_model_,
+                  "noise of the readings f_r cos_theta_i for the metric asinh, as in floor=0.002,relative=0.03 or with "
+                  "poisson=0.0001, the reading of one count; else it is estimated")
+      ->group(group);
   if (!with_mean) return;
   app->add_option("--mean", mean_,
                   "what a value is the mean of: flux (f_r cos_theta_i cos_theta_o over the means of the cosines, "
@@ -67,12 +72,22 @@ void InstrumentOptions::Apply(Recipe* recipe) const {
   if (detector_prior_deg_ > 0) recipe->instrument.detector_prior = DegreesToRadians(detector_prior_deg_);
   if (!mean_.empty()) recipe->instrument.mean = ParseApertureMean(mean_);
   if (!drift_.empty()) {
-    const std::optional<double> sd = ParseDouble(drift_);
-    if (drift_ != "auto" && !(sd && *sd > 0 && *sd <= 1)) {
+    const std::optional<StatedDrift> drift = ParseDrift(drift_);
+    if (!drift) {
       throw UsageError(
           fmt::format("--drift '{}': allowed are auto and a relative standard deviation in (0, 1]", Excerpt(drift_)));
     }
-    recipe->instrument.drift = DriftRecipe{sd};
+    recipe->instrument.drift = DriftRecipe{drift->sd};
+  }
+  if (!noise_model_.empty()) {
+    const std::optional<StatedNoise> noise = ParseNoiseModel(noise_model_);
+    if (!noise) {
+      throw UsageError(
+          fmt::format("--noise-model '{}': allowed is as in floor=0.002,relative=0.03,poisson=0.0001, floor or poisson "
+                      "above 0, relative in (0, 1]",
+                      Excerpt(noise_model_)));
+    }
+    recipe->noise = {noise->floor, noise->relative, noise->poisson};
   }
   if (alignment_deg_ > 0) {
     recipe->instrument.alignment = AlignmentRecipe();

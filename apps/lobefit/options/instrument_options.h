@@ -18,7 +18,7 @@ class InstrumentOptions {
 
  private:
   double source_deg_ = -1, detector_deg_ = -1, source_prior_deg_ = -1, detector_prior_deg_ = -1, across_deg_ = -1;
-  std::string mean_, drift_;
+  std::string mean_, drift_, noise_model_;
   double alignment_deg_ = -1;
   bool offset_ = false;
 };

@@ -111,6 +111,16 @@ nlohmann::ordered_json InstrumentToJson(const StatedInstrument& stated) {
   if (stated.detector_prior) json["detector_prior_deg"] = degrees(stated.detector_prior);
   json["mean"] = stated.plain_mean ? nlohmann::ordered_json(*stated.plain_mean ? "plain" : "flux")
                                    : nlohmann::ordered_json(nullptr);
+  json["drift"] = nullptr;
+  if (stated.drift)
+    json["drift"] = stated.drift->sd ? nlohmann::ordered_json(*stated.drift->sd) : nlohmann::ordered_json("auto");
+  json["alignment_deg"] = degrees(stated.alignment);
+  json["offset"] = stated.offset ? nlohmann::ordered_json(*stated.offset) : nlohmann::ordered_json(nullptr);
+  json["noise"] = nullptr;
+  if (stated.noise) {
+    json["noise"] = {
+        {"floor", stated.noise->floor}, {"relative", stated.noise->relative}, {"poisson", stated.noise->poisson}};
+  }
   return json;
 }
 
@@ -121,11 +131,23 @@ std::string InstrumentToText(const StatedInstrument& stated) {
     const std::string known = prior ? fmt::format(" +- {:.2g}", RadiansToDegrees(*prior)) : "";
     return fmt::format("{} {:.4g}{} degrees (half angle)", name, RadiansToDegrees(*radians), known);
   };
-  return fmt::format("  instrument   {}, {}, mean {}\n", half_angle("source", stated.source, stated.source_prior),
+  const std::string nothing = "not stated";
+  const std::string drift = !stated.drift      ? nothing
+                            : stated.drift->sd ? fmt::format("{:g}", *stated.drift->sd)
+                                               : std::string("auto");
+  const std::string alignment =
+      stated.alignment ? fmt::format("{:.4g} degrees", RadiansToDegrees(*stated.alignment)) : nothing;
+  const std::string offset = stated.offset ? std::string(*stated.offset ? "true" : "false") : nothing;
+  const std::string noise = stated.noise ? fmt::format("floor {:g}, relative {:g}, poisson {:g}", stated.noise->floor,
+                                                       stated.noise->relative, stated.noise->poisson)
+                                         : nothing;
+  return fmt::format("  instrument   {}, {}, mean {}; drift {}, alignment {}, offset {}, noise {}\n",
+                     half_angle("source", stated.source, stated.source_prior),
                      half_angle("detector", stated.detector, stated.detector_prior) +
                          (stated.detector_across ? fmt::format(" x {:.4g}", RadiansToDegrees(*stated.detector_across))
                                                  : std::string()),
-                     stated.plain_mean ? (*stated.plain_mean ? "plain" : "flux") : "not stated");
+                     stated.plain_mean ? (*stated.plain_mean ? "plain" : "flux") : "not stated", drift, alignment,
+                     offset, noise);
 }
 
 std::string ToJson(const Measurement& measurement, const Description& description) {

@@ -36,6 +36,15 @@ void WriteInstrument(const StatedInstrument& instrument, std::ostream& out) {
   write("source", instrument.source, instrument.source_prior, {});
   write("detector", instrument.detector, instrument.detector_prior, instrument.detector_across);
   if (instrument.plain_mean) out << "# mean: " << (*instrument.plain_mean ? "plain" : "flux") << '\n';
+  if (instrument.drift)
+    out << "# drift: " << (instrument.drift->sd ? FormatDouble(*instrument.drift->sd) : std::string("auto")) << '\n';
+  if (instrument.alignment) out << "# alignment: " << FormatDouble(RadiansToDegrees(*instrument.alignment)) << '\n';
+  if (instrument.offset) out << "# offset: " << (*instrument.offset ? "true" : "false") << '\n';
+  if (instrument.noise) {
+    out << "# noise: floor=" << FormatDouble(instrument.noise->floor)
+        << ", relative=" << FormatDouble(instrument.noise->relative)
+        << ", poisson=" << FormatDouble(instrument.noise->poisson) << '\n';
+  }
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ void RequireSameKind(const Measurement& a, const Measurement& b) {
     Refuse(a, b, "one is a table of cells (" + a.format + "), the other a list of samples (" + b.format + ")");
   if (a.instrument != b.instrument)
     Refuse(a, b,
-           "they state different half angles or means of the instrument; leave the keys source, detector and mean "
+           "they state different half angles or means of the instrument; leave the keys source, detector, mean, drift, "
+           "alignment, offset and noise "
            "out of the files, or fit each by itself");
   if (a.isotropic != b.isotropic)
     Refuse(a, b, "one is isotropic by construction, the other states azimuths of the light");

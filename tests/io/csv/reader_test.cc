@@ -232,6 +232,22 @@ TEST(Csv, KeysStateTheInstrument) {
     EXPECT_THROW(ReadText(bad + row), InputError) << bad;
   const Measurement prose = ReadText("# source: xenon lamp\n# detector: InGaAs\n# mean: of 3 scans\n" + row);
   EXPECT_FALSE(prose.instrument.source || prose.instrument.detector || prose.instrument.plain_mean);
+  const Measurement whole =
+      ReadText("# drift: 0.03\n# alignment: 0.2 deg\n# offset: true\n# noise: floor=0.002, relative = 0.03\n" + row);
+  EXPECT_EQ(whole.instrument.drift, StatedDrift{0.03});
+  EXPECT_DOUBLE_EQ(*whole.instrument.alignment, DegreesToRadians(0.2));
+  EXPECT_TRUE(*whole.instrument.offset);
+  EXPECT_EQ(whole.instrument.noise, (StatedNoise{0.002, 0.03, 0}));
+  EXPECT_TRUE(whole.remarks.empty());
+  EXPECT_EQ(ReadText("# Drift: auto\n# noise-model: poisson=1e-4,relative=0.01\n" + row).instrument.drift,
+            StatedDrift{});
+  for (const char* bad : {"# drift: 3\n", "# drift: -0.1\n", "# alignment: 0\n", "# alignment: 9 deg\n",
+                          "# noise: floor=0.002\n", "# noise: floor=a, relative=0.1\n", "# noise: relative=0.1\n",
+                          "# noise: floor=0.1, relative=2\n", "# noise-model: knee=1, relative=0.1, floor=1\n"})
+    EXPECT_THROW(ReadText(bad + row), InputError) << bad;
+  const Measurement words =
+      ReadText("# drift: below 1 % per hour\n# alignment: by laser\n# offset: subtracted\n# noise: low\n" + row);
+  EXPECT_EQ(words.instrument, StatedInstrument{});
   // Half a turn on the stage: directions are those of the sample, and the alignment learns of it.
   const Measurement turned = ReadText("# turned: true\n" + row);
   EXPECT_NEAR(turned.samples.wi_x[0], -std::sin(DegreesToRadians(10)), 1e-12);

@@ -64,6 +64,9 @@ std::optional<ValueKind> KindOf(std::string_view word) {
 // Of a source or detector as seen from the sample; as recipes allow.
 constexpr double kLargestHalfAngleDeg = 30;
 
+// As recipes allow.
+constexpr double kMostAlignmentDegrees = 5;
+
 // "1.5 deg" without its unit.
 std::string_view NumberOfDegrees(std::string_view word) {
   for (const std::string_view unit : {"degrees", "deg"}) {
@@ -248,6 +251,34 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
     if (stated.uncertainty) prior = DegreesToRadians(*stated.uncertainty);
   } else if (name == "mean" && (word == "flux" || word == "plain")) {
     keys->instrument.plain_mean = word == "plain";
+  } else if (name == "drift" && (word == "auto" || ParseDouble(word))) {
+    // As of source and detector, other words are prose ("# drift: not seen").
+    keys->instrument.drift = ParseDrift(word);
+    if (!keys->instrument.drift) {
+      FailAtLine(file, line,
+                 "drift is '" + Excerpt(word) +
+                     "'; allowed are auto and the relative standard deviation of the gains, above 0 and at most 1");
+    }
+  } else if (name == "alignment" && ParseDouble(NumberOfDegrees(word))) {
+    const double degrees = *ParseDouble(NumberOfDegrees(word));
+    if (!(degrees > 0 && degrees <= kMostAlignmentDegrees)) {
+      FailAtLine(
+          file, line,
+          "alignment is '" + Excerpt(word) +
+              "'; the standard deviation by which the sample may stand crooked is allowed, above 0 and at most " +
+              FormatDouble(kMostAlignmentDegrees) + " degrees");
+    }
+    keys->instrument.alignment = DegreesToRadians(degrees);
+  } else if (name == "offset" && (word == "true" || word == "false")) {
+    keys->instrument.offset = word == "true";
+  } else if (Is(name, {"noise", "noise-model"}) && word.find('=') != std::string_view::npos) {
+    keys->instrument.noise = ParseNoiseModel(word);
+    if (!keys->instrument.noise) {
+      FailAtLine(file, line,
+                 std::string(key) + " is '" + Excerpt(word) +
+                     "'; as in floor=0.002, relative=0.03, poisson=0.0001 the floor and the reading of one count are "
+                     "allowed, in 1/sr, one of them above 0, and the relative part, above 0 and at most 1");
+    }
   } else if (name == "value-column") {
     keys->value_column = std::string(word);
   } else if (name == "repeated") {
