@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "lobefit/base/text/same_word.h"
+
 namespace lobefit {
 namespace {
 
@@ -253,7 +255,7 @@ std::string CyrillicLetter(std::string_view text) {
 bool Decompose(std::string_view word, std::vector<std::string_view>* english) {
   if (word.empty()) return true;
   for (const Translation& part : kParts) {
-    if (!word.starts_with(part.foreign)) continue;
+    if (!BeginsWith(word, part.foreign)) continue;
     english->push_back(part.english);
     if (Decompose(word.substr(part.foreign.size()), english)) return true;
     english->pop_back();
@@ -269,7 +271,7 @@ std::string TranslateScripts(std::string_view name) {
     // Of the words of kScripts only "+-" and its like begin in ASCII.
     const bool may_begin = static_cast<unsigned char>(name.front()) >= 0x80 || name.front() == '+';
     const auto* entry = may_begin ? std::find_if(kScripts.begin(), kScripts.end(),
-                                                 [&](const Translation& t) { return name.starts_with(t.foreign); })
+                                                 [&](const Translation& t) { return BeginsWith(name, t.foreign); })
                                   : kScripts.end();
     if (entry != kScripts.end()) {
       const bool bracket = entry->english.size() == 1;
@@ -296,8 +298,8 @@ std::string TranslateScripts(std::string_view name) {
 }
 
 std::vector<std::string_view> TranslateWord(std::string_view word) {
-  const auto* entry =
-      std::find_if(kForeignWords.begin(), kForeignWords.end(), [&](const Translation& t) { return t.foreign == word; });
+  const auto* entry = std::find_if(kForeignWords.begin(), kForeignWords.end(),
+                                   [&](const Translation& t) { return SameWord(t.foreign, word); });
   if (entry != kForeignWords.end()) return {entry->english};
   constexpr std::size_t kLongest = 60;
   std::vector<std::string_view> english;
