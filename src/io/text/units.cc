@@ -184,18 +184,16 @@ std::string PlainUnit(std::string_view unit) {
       {"$", ""},
       {"\\", ""},
   }};
+  static constexpr ByFirstByte<kSigns.size()> kSignsByByte(kSigns, [](const auto& sign) { return sign.first; });
   std::string plain;
   bool apart = false;  // a blank before
   while (!unit.empty()) {
     const char c = unit.front();
-    // Names and keys of a file's head are asked for their unit dozens of times: most letters begin no sign.
-    const bool may_be_sign = static_cast<unsigned char>(c) >= 0x80 || c == '{' || c == '}' || c == '$' || c == '\\';
-    const auto* entry = may_be_sign ? std::find_if(kSigns.begin(), kSigns.end(),
-                                                   [&](const auto& sign) { return BeginsWith(unit, sign.first); })
-                                    : kSigns.end();
-    if (entry != kSigns.end()) {
-      plain += entry->second;
-      unit.remove_prefix(entry->first.size());
+    // Names and keys of a file's head are asked for their unit dozens of times.
+    const std::size_t found = kSignsByByte.Find(unit, [&](std::size_t i) { return unit.starts_with(kSigns[i].first); });
+    if (found < kSigns.size()) {
+      plain += kSigns[found].second;
+      unit.remove_prefix(kSigns[found].first.size());
       continue;
     }
     unit.remove_prefix(1);

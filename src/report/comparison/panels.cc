@@ -417,7 +417,7 @@ std::optional<Panel> ComparedSpheresPanel(const Compared& compared) {
   if (std::optional<LitSphere> measured = LightMeasured(first.measurement, to_color, kBallPixels))
     balls->push_back({std::move(*measured), "measured", style::kFaint});
   for (const Compared::Entry& entry : compared.models)
-    balls->push_back({LightFitted(entry.data->fitted, to_color, kBallPixels), entry.label, entry.color});
+    balls->push_back({LightFitted(entry.data->fitted, to_color, LitRows(kBallPixels)), entry.label, entry.color});
   Panel panel;
   panel.id = "spheres";
   panel.title = "Spheres under one light";

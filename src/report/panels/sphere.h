@@ -22,14 +22,25 @@ struct LitSphere {
   std::vector<std::uint8_t> known;
 };
 
+// The pixels of a row that see the light, with both directions in the frame of their point.
+struct LitRow {
+  std::vector<std::size_t> pixel;
+  std::array<std::vector<double>, 6> d;  // wi.x ... wo.z
+
+  Vec3 wi(std::size_t i) const { return {d[0][i], d[1][i], d[2][i]}; }
+  Vec3 wo(std::size_t i) const { return {d[3][i], d[4][i], d[5][i]}; }
+};
+// Of a sphere of size x size pixels, whatever its material.
+std::vector<LitRow> LitRows(int size);
+
 // f_r of one pair of directions; false where it is not known.
 using ShownBrdf = std::function<bool(const Vec3& wi, const Vec3& wo, double* f_r)>;
 
 // Towards the light; the viewer is at +z.
 Vec3 SphereLight();
 LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size);
-// The same of what was fitted, many pixels at once.
-LitSphere LightFitted(const FittedFunction& fitted, const ChannelColor& to_color, int size);
+// The same of what was fitted, many pixels at once; `rows` as LitRows gives them.
+LitSphere LightFitted(const FittedFunction& fitted, const ChannelColor& to_color, const std::vector<LitRow>& rows);
 // The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
 std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size);
 

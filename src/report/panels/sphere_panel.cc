@@ -53,17 +53,9 @@ bool SphereFrame(int column, int row, int size, Frame* frame) {
 
 using Sphere = LitSphere;
 
-// The pixels of a row that see the light, with both directions in the frame of their point.
-struct LitRow {
-  std::vector<std::size_t> pixel;
-  std::array<std::vector<double>, 6> d;  // wi.x ... wo.z
-
-  Vec3 wi(std::size_t i) const { return {d[0][i], d[1][i], d[2][i]}; }
-  Vec3 wo(std::size_t i) const { return {d[3][i], d[4][i], d[5][i]}; }
-  void Light(std::size_t i, const Color& f_r, Sphere* sphere) const {
-    for (std::size_t k = 0; k < 3; ++k) sphere->color[pixel[i]][k] = f_r[k] * d[2][i] * kPi;
-  }
-};
+void Light(const LitRow& lit, std::size_t i, const Color& f_r, Sphere* sphere) {
+  for (std::size_t k = 0; k < 3; ++k) sphere->color[lit.pixel[i]][k] = f_r[k] * lit.d[2][i] * kPi;
+}
 
 void FindLit(int row, int size, LitRow* lit) {
   const Vec3 light = SphereLight(), view = {0, 0, 1};
@@ -172,7 +164,7 @@ LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::
     FindLit(row, size, &lit);
     for (std::size_t i = 0; i < lit.pixel.size(); ++i) {
       if (brdf(lit.wi(i), lit.wo(i), f_r.data())) {
-        lit.Light(i, to_color.Linear(f_r.data()), &sphere);
+        Light(lit, i, to_color.Linear(f_r.data()), &sphere);
       } else {
         sphere.known[lit.pixel[i]] = 0;
       }
@@ -181,19 +173,24 @@ LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::
   return sphere;
 }
 
-LitSphere LightFitted(const FittedFunction& fitted, const ChannelColor& to_color, int size) {
+std::vector<LitRow> LitRows(int size) {
+  std::vector<LitRow> rows(static_cast<std::size_t>(size));
+  for (int row = 0; row < size; ++row) FindLit(row, size, &rows[static_cast<std::size_t>(row)]);
+  return rows;
+}
+
+LitSphere LightFitted(const FittedFunction& fitted, const ChannelColor& to_color, const std::vector<LitRow>& rows) {
+  const int size = static_cast<int>(rows.size());
   LitSphere sphere = Unlit(size);
-  LitRow lit;
-  const std::array<std::vector<double>, 6>& d = lit.d;
   std::vector<std::vector<double>> f_r;
   std::vector<double> values(fitted.channels());
-  for (int row = 0; row < size; ++row) {
-    FindLit(row, size, &lit);
+  for (const LitRow& lit : rows) {
+    const std::array<std::vector<double>, 6>& d = lit.d;
     fitted.Evaluate({d[0].data(), d[1].data(), d[2].data(), d[3].data(), d[4].data(), d[5].data(), lit.pixel.size()},
                     &f_r);
     for (std::size_t i = 0; i < lit.pixel.size(); ++i) {
       for (std::size_t c = 0; c < values.size(); ++c) values[c] = f_r[c][i];
-      lit.Light(i, to_color.Linear(values.data()), &sphere);
+      Light(lit, i, to_color.Linear(values.data()), &sphere);
     }
   }
   return sphere;
@@ -297,7 +294,7 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     // A narrow lobe in a sparse table leaves holes and rings under the sky: that is no measured appearance.
     spheres->sky = spheres->measured && IsCovered(spheres->sphere[2]);
   }
-  spheres->sphere[1] = LightFitted(data.fitted, to_color, kLightSize);
+  spheres->sphere[1] = LightFitted(data.fitted, to_color, LitRows(kLightSize));
   spheres->sphere[3] = SkySphere(fitted, lobe, to_color, data.channels(),
                                  spheres->sky ? kSkySamples : kSkySamplesOfAModel, data.threads);
   // One exposure for a pair: the measured sphere sets it.

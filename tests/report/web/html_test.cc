@@ -195,9 +195,9 @@ Material StudentOverOrenNayar(std::size_t channels) {
 std::string TruthJson(const ReportData& data) {
   constexpr int kSize = 40;
   const ChannelColor to_color(data.measurement.channels);
-  const double exposure = SphereExposure(LightFitted(data.fitted, to_color, 128));
+  const double exposure = SphereExposure(LightFitted(data.fitted, to_color, LitRows(128)));
   std::string bytes;
-  for (const auto& color : LightFitted(data.fitted, to_color, kSize).color) {
+  for (const auto& color : LightFitted(data.fitted, to_color, LitRows(kSize)).color) {
     const Rgb c = ToScreen(color, exposure);
     for (const std::uint8_t v : {c.r, c.g, c.b}) bytes.push_back(static_cast<char>(v));
   }

@@ -108,6 +108,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 92> kLetters
     {"ý", "y"},
 }};
 
+constexpr ByFirstByte<kLetters.size()> kLettersByByte(kLetters, [](const auto& letter) { return letter.first; });
+
 bool IsLower(char c) { return c >= 'a' && c <= 'z'; }
 bool IsUpper(char c) { return c >= 'A' && c <= 'Z'; }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
@@ -116,13 +118,11 @@ bool IsLetter(char c) { return IsLower(c) || IsUpper(c); }
 std::string ToAscii(std::string_view name) {
   std::string ascii;
   while (!name.empty()) {
-    const bool is_ascii = static_cast<unsigned char>(name.front()) < 0x80;
-    const auto* entry = is_ascii ? kLetters.end()
-                                 : std::find_if(kLetters.begin(), kLetters.end(),
-                                                [&](const auto& letter) { return BeginsWith(name, letter.first); });
-    if (entry != kLetters.end()) {
-      ascii += entry->second;
-      name.remove_prefix(entry->first.size());
+    const std::size_t found =
+        kLettersByByte.Find(name, [&](std::size_t i) { return name.starts_with(kLetters[i].first); });
+    if (found < kLetters.size()) {
+      ascii += kLetters[found].second;
+      name.remove_prefix(kLetters[found].first.size());
       continue;
     }
     ascii += name.front();
