@@ -123,6 +123,20 @@ TEST_F(InputsTest, SearchesFoldersByContent) {
   EXPECT_TRUE(inputs.some_skipped[2].ends_with("conditions"));
 }
 
+TEST_F(InputsTest, NamesThatCannotBeWrittenDownAreRefused) {
+  Put("data/a.csv", kCsv);
+  Put("data/b\xFC.csv", kCsv);  // Latin-1
+  try {
+    Gather({"data"});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("is not UTF-8"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("b?.csv"));
+  }
+  std::filesystem::rename(folder_ / "data/b\xFC.csv", folder_ / "data/b\xC3\xBC.csv");
+  EXPECT_EQ(Gather({"data"}).list.tasks.size(), 2U);
+}
+
 TEST_F(InputsTest, LinksThatLeadNowhereAreSkippedAndCounted) {
   Put("data/a.csv", kCsv);
   std::filesystem::create_symlink("loop", folder_ / "data/loop");

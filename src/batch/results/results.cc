@@ -124,9 +124,9 @@ int ResultTable::ExitCode() const {
 }
 
 ResultTable MakeTable(const WorkList& list, const Records& records, int threads) {
-  std::unordered_map<std::string, std::string> settings;
+  std::unordered_map<std::string_view, std::string_view> settings;
   for (const Task& task : list.tasks) settings.emplace(task.id, task.settings);
-  const std::unordered_map<std::string, const DoneRecord*> latest = LatestDone(records, settings);
+  const std::unordered_map<std::string_view, const DoneRecord*> latest = LatestDone(records, settings);
   std::vector<const Task*> tasks;
   for (const Task& task : list.tasks) tasks.push_back(&task);
   std::sort(tasks.begin(), tasks.end(), [](const Task* a, const Task* b) { return a->id < b->id; });
