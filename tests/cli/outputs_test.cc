@@ -29,6 +29,30 @@ TEST_F(Outputs, AnInputIsNeverOverwritten) {
   EXPECT_EQ(ReadWholeFile(folder_ / "m.material.json"), material);
 }
 
+TEST_F(Outputs, AFormatIsCheckedBeforeAFolderIsMade) {
+  const ProgramResult result =
+      Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ggx --format pdf --out new");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, testing::HasSubstr("--format 'pdf' is unknown"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new"));
+}
+
+// Nothing is read back from them: that would wait for ever, or take standard input for the result.
+TEST_F(Outputs, ConversionsGoThroughPipesAndDevices) {
+  const ProgramResult file = Shell("cp $SOURCE/samples/satin_plastic.csv a.csv && lobefit convert a.csv b.csv");
+  ASSERT_EQ(file.exit_code, 0) << file.err;
+  const std::string csv = ReadWholeFile(folder_ / "b.csv");
+  const ProgramResult standard = Shell("timeout 60 lobefit convert a.csv - --to csv");
+  EXPECT_EQ(standard.exit_code, 0) << standard.err;
+  EXPECT_EQ(standard.out, csv);
+  EXPECT_THAT(standard.err, testing::HasSubstr("Not compared: what went into a pipe or device is not read back"));
+  const ProgramResult pipe = Shell(
+      "mkfifo p && { cat p > got & } && timeout 60 lobefit convert - p --to csv < a.csv && wait && cmp got b.csv");
+  EXPECT_EQ(pipe.exit_code, 0) << pipe.err;
+  EXPECT_EQ(Shell("timeout 60 lobefit convert a.csv /dev/null --to csv && test -c /dev/null").exit_code, 0);
+  EXPECT_EQ(Shell("lobefit convert a.csv /dev/full --to csv").exit_code, 3);
+}
+
 // Files are made in --out and nowhere else; said before the work, with nothing made.
 TEST_F(Outputs, ANameIsNoPath) {
   ASSERT_EQ(Shell("cp $SOURCE/samples/satin_plastic.csv . && mkdir a").exit_code, 0);
