@@ -75,6 +75,7 @@ BrdfFunction Continued(const BrdfFunction& brdf, const DirectionsPredicate& cove
 }
 
 Paths WriteCsvFormat(const WriteSource& source, const WriteOptions&, const Path& path) {
+  RequireReadableChannels(source.channels);
   return WriteSamples(source, path, [&](const Measurement& measurement) { WriteCsv(measurement, {}, path); });
 }
 

@@ -53,6 +53,20 @@ TEST_F(Outputs, ConversionsGoThroughPipesAndDevices) {
   EXPECT_EQ(Shell("lobefit convert a.csv /dev/full --to csv").exit_code, 3);
 }
 
+// A file that could not be read again is not written.
+TEST_F(Outputs, ChannelsThatACsvCannotNameAreRefused) {
+  for (const char* names : {"<b>R&D</b>,second", "R,G", "a b,550nm"}) {
+    std::string text = std::string("VARS theta_i,phi_i,theta_s,phi_s,") + names + "\n";
+    for (int i = 0; i < 40; ++i)
+      text += std::to_string(10 + 20 * (i / 10)) + ",0," + std::to_string(7 * (i % 10)) + ",180,0.3,0.2\n";
+    WriteWholeFile(folder_ / "odd.astm", text);
+    const ProgramResult result = Shell("lobefit convert odd.astm odd.csv --angle-unit deg");
+    EXPECT_EQ(result.exit_code, 3) << names << result.out;
+    EXPECT_THAT(result.err, testing::HasSubstr("choose one channel with --channels, or another format")) << names;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "odd.csv")) << names;
+  }
+}
+
 // Files are made in --out and nowhere else; said before the work, with nothing made.
 TEST_F(Outputs, ANameIsNoPath) {
   ASSERT_EQ(Shell("cp $SOURCE/samples/satin_plastic.csv . && mkdir a").exit_code, 0);
