@@ -16,6 +16,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// What the library says, without the name of its error in brackets.
+std::string ReasonOf(const Json::exception& error) {
+  const std::string_view reason = error.what();
+  const std::size_t end = reason.find("] ");
+  return std::string(end == std::string_view::npos ? reason : reason.substr(end + 2));
+}
+
 // Reading: every access names the member in its error.
 class Reader {
  public:
@@ -404,7 +411,7 @@ Material MaterialFromJson(const std::string& text, const std::string& file_name)
   try {
     json = Json::parse(text);
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: is not JSON: {}", file_name, error.what()));
+    throw InputError(fmt::format("{}: is not JSON: {}", file_name, ReasonOf(error)));
   }
   const Reader reader(json, file_name);
   if (!json.is_object() || json.value("format", Json()) != Json("lobefit material")) {
@@ -425,7 +432,7 @@ Material MaterialFromJson(const std::string& text, const std::string& file_name)
     ReadRest(reader, &material);
     return material;
   } catch (const Json::exception& error) {
-    reader.Fail(fmt::format("does not follow the schema: {}", error.what()));
+    reader.Fail(fmt::format("does not follow the schema: {}", ReasonOf(error)));
   }
 }
 

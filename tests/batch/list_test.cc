@@ -102,16 +102,39 @@ TEST_F(InputsTest, SearchesFoldersByContent) {
   // Of other columns, and prose with commas.
   Put("data/normals.csv", "column,row,height\n1,2,3\n");
   Put("data/LICENSE", "Permission is granted, free of charge,\nto 1, 2 or more persons\n");
+  // Prose with a table of what was measured, and prose that speaks of angles.
+  Put("data/conditions", "Measured in May.\n\n| theta_i | theta_o | file |\n|---|---|---|\n| 10 | 20 | a.csv |\n");
+  Put("data/about.txt", "The angles theta_i, theta_o of the first file are\ngiven in degrees, of the others in rad\n");
+  // What a detector gave is no BRDF, but may have been meant.
+  Put("data/signal.csv", "theta_i,theta_o,signal\n10,20,1\n");
   // Cut off, and packed and cut off: they are listed, and will fail.
   Put("data/names.csv", "theta_i,phi_i,theta_o,phi_o,value\n");
   Put("data/sub/cut.csv.gz", "\x1f\x8b\x08");
   const Inputs inputs = Gather({"data"});
-  ASSERT_EQ(inputs.list.tasks.size(), 4U);
+  ASSERT_EQ(inputs.list.tasks.size(), 5U);
   EXPECT_EQ(inputs.list.tasks[0].id, "sub/a.dat");  // the bigger one
   EXPECT_EQ(inputs.list.tasks[1].id, "b.txt");
   EXPECT_EQ(inputs.list.tasks[2].id, "names.csv");
-  EXPECT_EQ(inputs.list.tasks[3].id, "sub/cut.csv.gz");
-  EXPECT_EQ(inputs.skipped, 3U);
+  EXPECT_EQ(inputs.list.tasks[3].id, "signal.csv");
+  EXPECT_EQ(inputs.list.tasks[4].id, "sub/cut.csv.gz");
+  EXPECT_EQ(inputs.skipped, 5U);
+  ASSERT_EQ(inputs.some_skipped.size(), 5U);
+  EXPECT_TRUE(inputs.some_skipped[1].ends_with("about.txt"));
+  EXPECT_TRUE(inputs.some_skipped[2].ends_with("conditions"));
+}
+
+TEST_F(InputsTest, NamesThatCannotBeWrittenDownAreRefused) {
+  Put("data/a.csv", kCsv);
+  Put("data/b\xFC.csv", kCsv);  // Latin-1
+  try {
+    Gather({"data"});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("is not UTF-8"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("b?.csv"));
+  }
+  std::filesystem::rename(folder_ / "data/b\xFC.csv", folder_ / "data/b\xC3\xBC.csv");
+  EXPECT_EQ(Gather({"data"}).list.tasks.size(), 2U);
 }
 
 TEST_F(InputsTest, LinksThatLeadNowhereAreSkippedAndCounted) {

@@ -75,6 +75,24 @@ TEST(Results, ColumnsAreOfAllRowsAndRowsById) {
   EXPECT_EQ(nlohmann::json::parse(line)["lab"], "lab b");
 }
 
+TEST(Results, ColumnsOfTheListStayBesideResultsOfTheirName) {
+  WorkList list = List();
+  list.extra_columns = {"alpha_x", "lab", "listed.alpha_x"};
+  for (Task& task : list.tasks) task.extra = {"0.3", "x", "y"};
+  Records records;
+  records.segments.resize(1);
+  records.done = {Done("a", TaskStatus::kFitted, R"({"alpha_x":0.25})")};
+  const ResultTable table = MakeTable(list, records, 1);
+  EXPECT_THAT(std::vector<std::string>(table.columns.begin(), table.columns.begin() + 6),
+              ElementsAre("id", "file", "listed.listed.alpha_x", "lab", "listed.alpha_x", "status"));
+  RowTexts texts(table);
+  const std::vector<std::string>& row = texts.Of(table.rows[0]);
+  EXPECT_EQ(table.columns.back(), "alpha_x");
+  EXPECT_EQ(row.back(), "0.25");
+  EXPECT_EQ(row[2], "0.3");
+  EXPECT_THAT(ReservedColumns(), testing::Contains("result"));
+}
+
 TEST(Results, ExitCodeSaysWhatIsLeft) {
   const WorkList list = List();
   Records records;

@@ -49,7 +49,7 @@ std::pair<double, double> CompareSpheres(const LitSphere& table, const LitSphere
 }
 
 Look Render(const ShownBrdf& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color) {
-  return {LightSphere(brdf, to_color, 3, kLightSize),
+  return {LightSphere(brdf, to_color, 3, LitRows(kLightSize)),
           SkySphere(brdf, lobe, to_color, 3, kSkySamples, HardwareThreads())};
 }
 

@@ -29,6 +29,44 @@ TEST_F(Outputs, AnInputIsNeverOverwritten) {
   EXPECT_EQ(ReadWholeFile(folder_ / "m.material.json"), material);
 }
 
+TEST_F(Outputs, AFormatIsCheckedBeforeAFolderIsMade) {
+  const ProgramResult result =
+      Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --recipe ggx --format pdf --out new");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, testing::HasSubstr("--format 'pdf' is unknown"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new"));
+}
+
+// Nothing is read back from them: that would wait for ever, or take standard input for the result.
+TEST_F(Outputs, ConversionsGoThroughPipesAndDevices) {
+  const ProgramResult file = Shell("cp $SOURCE/samples/satin_plastic.csv a.csv && lobefit convert a.csv b.csv");
+  ASSERT_EQ(file.exit_code, 0) << file.err;
+  const std::string csv = ReadWholeFile(folder_ / "b.csv");
+  const ProgramResult standard = Shell("timeout 60 lobefit convert a.csv - --to csv");
+  EXPECT_EQ(standard.exit_code, 0) << standard.err;
+  EXPECT_EQ(standard.out, csv);
+  EXPECT_THAT(standard.err, testing::HasSubstr("Not compared: what went into a pipe or device is not read back"));
+  const ProgramResult pipe = Shell(
+      "mkfifo p && { cat p > got & } && timeout 60 lobefit convert - p --to csv < a.csv && wait && cmp got b.csv");
+  EXPECT_EQ(pipe.exit_code, 0) << pipe.err;
+  EXPECT_EQ(Shell("timeout 60 lobefit convert a.csv /dev/null --to csv && test -c /dev/null").exit_code, 0);
+  EXPECT_EQ(Shell("lobefit convert a.csv /dev/full --to csv").exit_code, 3);
+}
+
+// A file that could not be read again is not written.
+TEST_F(Outputs, ChannelsThatACsvCannotNameAreRefused) {
+  for (const char* names : {"<b>R&D</b>,second", "R,G", "a b,550nm"}) {
+    std::string text = std::string("VARS theta_i,phi_i,theta_s,phi_s,") + names + "\n";
+    for (int i = 0; i < 40; ++i)
+      text += std::to_string(10 + 20 * (i / 10)) + ",0," + std::to_string(7 * (i % 10)) + ",180,0.3,0.2\n";
+    WriteWholeFile(folder_ / "odd.astm", text);
+    const ProgramResult result = Shell("lobefit convert odd.astm odd.csv --angle-unit deg");
+    EXPECT_EQ(result.exit_code, 3) << names << result.out;
+    EXPECT_THAT(result.err, testing::HasSubstr("choose one channel with --channels, or another format")) << names;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "odd.csv")) << names;
+  }
+}
+
 // Files are made in --out and nowhere else; said before the work, with nothing made.
 TEST_F(Outputs, ANameIsNoPath) {
   ASSERT_EQ(Shell("cp $SOURCE/samples/satin_plastic.csv . && mkdir a").exit_code, 0);

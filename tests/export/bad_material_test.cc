@@ -31,7 +31,7 @@ TEST(BadMaterial, SaysWhatIsWrong) {
       {"", "no material that can be read; allowed are"},
       {"\0\1\2", "no material that can be read"},
       {"{\"model\": 1}", "is not a material document"},
-      {"{", "is not JSON"},
+      {"{", "is not JSON: parse error at line 1"},
       {"Material \"glass\"", "line 1: the material type 'glass' is not understood"},
       {"\nMaterial \"conductor\" \"float roughness\" 0.1", "line 2: a conductor needs \"rgb reflectance\""},
       {"Material \"conductor\" \"rgb reflectance\" [.5 .5]", "reflectance is not three numbers"},

@@ -80,8 +80,9 @@ WorkList ListOf(const BatchVerb& verb, TaskOptions* options) {
   names.reserved = ReservedColumns();
   Inputs inputs = GatherInputs(verb.inputs, common, names, verb.out, stored);
   if (inputs.skipped > 0) {
-    std::fprintf(stderr, "lobefit: %zu files of the folders are of no known format and left out: %s%s\n",
-                 inputs.skipped, Excerpt(Join(inputs.some_skipped), 400).c_str(),
+    std::fprintf(stderr, "lobefit: %zu file%s of the folders hold%s no measurement and %s left out: %s%s\n",
+                 inputs.skipped, inputs.skipped == 1 ? "" : "s", inputs.skipped == 1 ? "s" : "",
+                 inputs.skipped == 1 ? "is" : "are", Excerpt(Join(inputs.some_skipped), 400).c_str(),
                  inputs.skipped > inputs.some_skipped.size() ? ", ..." : "");
   }
   SetSettings(settings_of, &inputs.list);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "options/measurement_options.h"
+#include "text/output.h"
 #include "verbs/verb.h"
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -78,19 +79,21 @@ int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
     source.covers = table.covers;
   }
   const Conversion conversion = Convert(source, format, {}, out);
+  std::FILE* const messages = SummaryStream(out);
   if (common.json) {
-    fmt::print("{}\n", ToJson(conversion, shown));
+    fmt::print(messages, "{}\n", ToJson(conversion, shown));
     return 0;
   }
-  for (const std::filesystem::path& file : conversion.files) fmt::print("{}: {}\n", file.string(), format.description);
-  if (!shown.empty()) fmt::print("Isotropic: {}\n", shown);
-  for (const std::string& loss : conversion.losses) fmt::print("Lost: {}\n", loss);
+  for (const std::filesystem::path& file : conversion.files)
+    fmt::print(messages, "{}: {}\n", PrintableName(file), format.description);
+  if (!shown.empty()) fmt::print(messages, "Isotropic: {}\n", shown);
+  for (const std::string& loss : conversion.losses) fmt::print(messages, "Lost: {}\n", loss);
   if (conversion.difference.compared == 0) {
-    fmt::print("Not compared: {}\n", conversion.not_compared);
+    fmt::print(messages, "Not compared: {}\n", conversion.not_compared);
     return 0;
   }
-  fmt::print("Relative difference at {} values: median {:.2g}, largest {:.2g}\n", conversion.difference.compared,
-             conversion.difference.median, conversion.difference.maximum);
+  fmt::print(messages, "Relative difference at {} values: median {:.2g}, largest {:.2g}\n",
+             conversion.difference.compared, conversion.difference.median, conversion.difference.maximum);
   return 0;
 }
 

@@ -38,9 +38,9 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   const std::string own = of_material ? stem.substr(0, stem.find('.')) + ".sel" : stem;
   const std::string name = ResultName(verb.name, own);
   const std::filesystem::path folder = verb.out;
+  const std::vector<std::string> formats = ParseReportFormats(verb.format);
   MakeFolder(folder);
   const std::filesystem::path document = folder / (name + ".material.json"), picture = folder / (name + ".report.png");
-  const std::vector<std::string> formats = ParseReportFormats(verb.format);
   const std::vector<std::filesystem::path> inputs = InputPaths(verb.files);
   CheckOutput(document, inputs);
   if (!verb.no_report) CheckReports(formats, picture, inputs);

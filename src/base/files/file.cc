@@ -60,11 +60,14 @@ void FileBytes::Reserve(std::size_t bytes) {
   constexpr std::size_t kLargePage = std::size_t{1} << 21, kSmall = std::size_t{1} << 16;
   const std::size_t unit = bytes > kLargePage ? kLargePage : kSmall;
   const std::size_t capacity = std::max(unit, (bytes + unit - 1) / unit * unit);
-  std::unique_ptr<char[], Free> memory(static_cast<char*>(std::aligned_alloc(unit, capacity)));
-  if (!memory) throw std::bad_alloc();
-  AdviseLargePages(memory.get(), capacity);
-  if (size_ > 0) std::memcpy(memory.get(), memory_.get(), size_);
-  memory_ = std::move(memory);
+  // What grows is moved by its pages, so that a long pipe is not in memory twice; the kernel moves only what has no advice.
+  const bool grows = size_ > 0;
+  char* const memory =
+      static_cast<char*>(grows ? std::realloc(memory_.get(), capacity) : std::aligned_alloc(unit, capacity));
+  if (memory == nullptr) throw std::bad_alloc();
+  static_cast<void>(memory_.release());
+  memory_.reset(memory);
+  if (!grows) AdviseLargePages(memory, capacity);
   capacity_ = capacity;
 }
 
@@ -93,7 +96,7 @@ void FileBytes::Read(int descriptor) {
     if (count == 0) break;
     size_ += static_cast<std::size_t>(count);
     refuse_beyond(size_);
-    if (size_ == capacity_) Reserve(2 * capacity_);
+    if (size_ == capacity_) Reserve(std::min(2 * capacity_, most + 1));
   }
   // Standard input may stand in the middle of a file.
   if (path_ != "-" && size_ < stated) {

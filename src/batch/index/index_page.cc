@@ -1,6 +1,7 @@
 #include "lobefit/batch/index/index_page.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <map>
@@ -31,14 +32,25 @@ bool IsShown(const std::string& column) {
          !column.ends_with(".clustered_freedom");
 }
 
+// Columns of names and words, also where one of them reads as a number: an id may be "550" or "nan".
+bool HoldsText(const std::string& column) {
+  static const std::set<std::string> texts = {"id", "status", "verdict", "message", "recipe", "model"};
+  return texts.contains(column);
+}
+
+// With the digits that a page shows; JSON has no number that is not finite.
+Json Shown(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.6g", value);
+  return Json::parse(digits);
+}
+
 // A number with the digits that a page shows, or the text.
 Json Shown(const std::string& text) {
   if (text.empty()) return nullptr;
   const std::optional<double> value = ParseDouble(text);
-  if (!value) return text;
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g", *value);
-  return Json::parse(digits, nullptr, false);
+  return value && std::isfinite(*value) ? Shown(*value) : Json(text);
 }
 
 // Half the 95 % interval of a parameter: by the clustered error where there is one.
@@ -47,15 +59,8 @@ Json HalfInterval(const std::string& error, const std::string& clustered, const 
   constexpr double kNormal = 1.959964;
   const std::optional<double> of_clusters = ParseDouble(clustered), of_samples = ParseDouble(error),
                               degrees = ParseDouble(freedom);
-  char digits[32];
-  if (of_clusters && degrees && *degrees > 0) {
-    std::snprintf(digits, sizeof digits, "%.6g", *of_clusters * StudentTQuantile(kUpper, *degrees));
-  } else if (of_samples) {
-    std::snprintf(digits, sizeof digits, "%.6g", *of_samples * kNormal);
-  } else {
-    return nullptr;
-  }
-  return Json::parse(digits, nullptr, false);
+  if (of_clusters && degrees && *degrees > 0) return Shown(*of_clusters * StudentTQuantile(kUpper, *degrees));
+  return of_samples ? Shown(*of_samples * kNormal) : Json(nullptr);
 }
 
 // The rows of the page: failures first, then by id, as many as it takes; by id again.
@@ -106,7 +111,7 @@ class PageColumns {
       const std::string& name = table.columns[i];
       if (filled[i] && IsShown(name))
         columns_.push_back({i, find(name + ".stderr"), find(name + ".stderr_clustered"),
-                            find(name + ".clustered_freedom"), false, 0, Json::array()});
+                            find(name + ".clustered_freedom"), HoldsText(name), HoldsText(name), 0, Json::array()});
     }
     for (const ResultTable::Row* row : rows) Add(texts.Of(*row));
   }
@@ -135,7 +140,8 @@ class PageColumns {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   struct Column {
     std::size_t place, error, clustered, freedom;  // in the table
-    bool is_text;
+    const bool is_name;                            // a text whatever it looks like
+    bool is_text;                                  // some of its fields
     std::size_t numbers;
     Json half_intervals;
   };
@@ -144,7 +150,8 @@ class PageColumns {
     const auto text = [&](std::size_t place) { return place == kNone ? std::string() : fields[place]; };
     Json cells = Json::array();
     for (Column& column : columns_) {
-      cells.push_back(Shown(fields[column.place]));
+      const std::string& field = fields[column.place];
+      cells.push_back(column.is_name && !field.empty() ? Json(field) : Shown(field));
       column.is_text = column.is_text || cells.back().is_string();
       column.numbers += cells.back().is_number() ? 1 : 0;
       if (column.error == kNone) continue;

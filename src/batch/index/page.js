@@ -120,12 +120,16 @@ function showTable() {
   const head = make("tr");
   data.columns.forEach((c, i) => {
     const by = Number(get("sort").value);
-    const cell = make("th", c.text ? "text" : "", c.name + (i === by ? (descending ? " ▼" : " ▲") : ""));
-    cell.addEventListener("click", () => {
+    const cell = make("th", c.text ? "text" : ""), button = make("button", "", c.name + (i === by ? (descending ? " ▼" : " ▲") : ""));
+    button.type = "button";
+    if (i === by) cell.setAttribute("aria-sort", descending ? "descending" : "ascending");
+    cell.append(button);
+    button.addEventListener("click", () => {
       descending = i === by ? !descending : false;
       get("sort").value = i;
       get("order").setAttribute("aria-pressed", descending);
       arrange();
+      get("table").tHead.rows[0].cells[i].firstChild.focus({ preventScroll: true });
     });
     head.append(cell);
   });
@@ -139,6 +143,11 @@ function showTable() {
         const link = make("a", "", row[i]);
         link.href = linkTo(row, ".material.json");
         cell.append(link);
+        if (data.reports.includes(index)) {
+          const report = make("a", "report", "report");
+          report.href = linkTo(row, ".report.html");
+          cell.append(" ", report);
+        }
       } else {
         cell.textContent = number(row[i]);
       }
@@ -242,8 +251,10 @@ showTotals();
 showFailures();
 fill(get("sort"), "id", false);
 const numeric = data.columns.filter((c) => !c.text).map((c) => c.name);
-fill(get("x"), numeric.includes("alpha_x") ? "alpha_x" : numeric[0], true);
-fill(get("y"), data.scatter_y, true);
+const firstX = numeric.includes("alpha_x") ? "alpha_x" : numeric[0];
+fill(get("x"), firstX, true);
+fill(get("y"), data.scatter_y || numeric.find((name) => name !== firstX), true);
+get("scatterSection").hidden = numeric.length === 0;
 for (const id of ["sort", "x", "y", "logX", "logY"]) get(id).addEventListener("change", arrange);
 get("filter").addEventListener("input", arrange);
 get("order").addEventListener("click", () => {

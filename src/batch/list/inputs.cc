@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <fstream>
 #include <iostream>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/files/file.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/base/text/text.h"
 #include "lobefit/batch/list/series.h"
 #include "lobefit/io/csv/reader.h"
@@ -201,26 +203,50 @@ class Gatherer {
     }
   }
 
+  // Lists and records are JSON, which holds no other bytes: the name could not be found again.
+  static void CheckUtf8(const Task& task) {
+    const auto is_fine = [](std::string_view text) {
+      while (!text.empty()) {
+        const std::size_t length = Utf8Length(text);
+        if (length == 0) return false;
+        text.remove_prefix(length);
+      }
+      return true;
+    };
+    bool fine = is_fine(task.id) && is_fine(task.file) && is_fine(task.path.native());
+    for (const std::string& member : task.members) fine = fine && is_fine(member);
+    if (fine) return;
+    throw InputError(
+        fmt::format("{}: the name '{}' is not UTF-8, in which lists and results are written; rename the file or folder",
+                    task.place, Excerpt(task.members.empty() ? task.path.native() : task.file, 200)));
+  }
+
   // Whether the id needs a folder where the results of another one lie.
-  static void CheckFolders(const Task& task, const std::unordered_map<std::string, const Task*>& ids) {
+  static void CheckFolders(const Task& task, const std::unordered_map<std::string_view, const Task*>& ids) {
     for (Path folder = Path(task.id).parent_path(); !folder.empty(); folder = folder.parent_path()) {
       for (const std::string ending : {".material.json", ".report.png", ".report.html"}) {
-        const std::string name = folder.string();
+        const std::string_view name = folder.native();
         const auto other = name.ends_with(ending) ? ids.find(name.substr(0, name.size() - ending.size())) : ids.end();
         if (other == ids.end()) continue;
         throw InputError(
             fmt::format("{}: the id '{}' needs a folder that is named as a result of '{}' ({}); give one of "
                         "them another id",
-                        task.place, Excerpt(task.id, 80), Excerpt(other->first, 80), other->second->place));
+                        task.place, Excerpt(task.id, 80), Excerpt(other->second->id, 80), other->second->place));
       }
     }
   }
 
   void Check() const {
-    std::unordered_map<std::string, const Task*> ids, files;
+    // Of the tasks' own texts, which a hundred thousand need not have twice; those of series are made here.
+    std::unordered_map<std::string_view, const Task*> ids, files;
+    std::deque<std::string> of_series;
     for (const Task& task : gathered_.list.tasks) {
+      CheckUtf8(task);
       CheckId(task);
-      const auto [same_file, new_file] = files.emplace(Join(FilesToFit(task), "\n"), &task);
+      if (!task.members.empty()) of_series.push_back(Join(FilesToFit(task), "\n"));
+      const std::string_view key =
+          task.members.empty() ? std::string_view(task.path.native()) : std::string_view(of_series.back());
+      const auto [same_file, new_file] = files.emplace(key, &task);
       if (!new_file && same_file->second->options == task.options) {
         throw InputError(
             fmt::format("{}: '{}' is listed already ({}); remove one, or give them different options and "

@@ -1,6 +1,7 @@
 #include "lobefit/batch/list/work_list.h"
 
 #include <algorithm>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -41,14 +42,14 @@ std::string OptionText(const OptionWords& options) {
 }
 
 // The tasks of `list` by id.
-std::unordered_map<std::string, const Task*> ById(const WorkList& list) {
-  std::unordered_map<std::string, const Task*> tasks;
+std::unordered_map<std::string_view, const Task*> ById(const WorkList& list) {
+  std::unordered_map<std::string_view, const Task*> tasks;
   for (const Task& task : list.tasks) tasks.emplace(task.id, &task);
   return tasks;
 }
 
 void CheckContains(const WorkList& list, const WorkList& stored, const std::filesystem::path& out) {
-  const std::unordered_map<std::string, const Task*> now = ById(list);
+  const std::unordered_map<std::string_view, const Task*> now = ById(list);
   for (const Task& task : stored.tasks) {
     const auto found = now.find(task.id);
     if (found == now.end()) {
@@ -126,8 +127,9 @@ void StoreWorkList(const WorkList& list, const std::filesystem::path& out) {
   const WorkList stored = ReadWorkList(out);
   CheckContains(list, stored, out);
   MakeFolder(out);
-  if (ToText(stored) == ToText(list)) return;
-  WriteFileAtomically(PathOf(out), ToText(list));
+  const std::string text = ToText(list);
+  if (stored.tasks.size() == list.tasks.size() && ToText(stored) == text) return;
+  WriteFileAtomically(PathOf(out), text);
 }
 
 std::filesystem::path ResultPath(const std::filesystem::path& out, const std::string& id, const std::string& ending) {

@@ -90,6 +90,19 @@ BlockColumns ColumnsOf(const ResultTable& table, std::size_t block) {
   return columns;
 }
 
+// The list's own columns under names that no result has: its "alpha_x", perhaps the truth, stays beside the fitted one.
+std::vector<std::string> ApartFrom(const std::vector<std::string>& results, std::vector<std::string> extra) {
+  std::unordered_set<std::string> taken(results.begin(), results.end());
+  taken.insert(extra.begin(), extra.end());
+  const std::unordered_set<std::string> of_results(results.begin(), results.end());
+  for (std::string& name : extra) {
+    if (!of_results.contains(name)) continue;
+    while (taken.contains(name)) name.insert(0, "listed.");
+    taken.insert(name);
+  }
+  return extra;
+}
+
 // What `text_of` gives for each block, in order; a few blocks are in memory at once.
 template <typename TextOf>
 void WriteBlocks(const ResultTable& table, int threads, std::ostream& out, const TextOf& text_of) {
@@ -111,9 +124,9 @@ int ResultTable::ExitCode() const {
 }
 
 ResultTable MakeTable(const WorkList& list, const Records& records, int threads) {
-  std::unordered_map<std::string, std::string> settings;
+  std::unordered_map<std::string_view, std::string_view> settings;
   for (const Task& task : list.tasks) settings.emplace(task.id, task.settings);
-  const std::unordered_map<std::string, const DoneRecord*> latest = LatestDone(records, settings);
+  const std::unordered_map<std::string_view, const DoneRecord*> latest = LatestDone(records, settings);
   std::vector<const Task*> tasks;
   for (const Task& task : list.tasks) tasks.push_back(&task);
   std::sort(tasks.begin(), tasks.end(), [](const Task* a, const Task* b) { return a->id < b->id; });
@@ -131,20 +144,21 @@ ResultTable MakeTable(const WorkList& list, const Records& records, int threads)
   }
   std::vector<BlockColumns> blocks(Blocks(table));
   ParallelFor(blocks.size(), threads, [&](std::size_t block) { blocks[block] = ColumnsOf(table, block); });
-  OrderedNames columns;
+  OrderedNames results;
   std::size_t hint = 0;
   const auto add = [&](const std::vector<std::string>& names) {
-    for (const std::string& name : names) columns.Add(name, &hint);
+    for (const std::string& name : names) results.Add(name, &hint);
   };
-  add(kFirst);
-  add(list.extra_columns);
   add(kOfTask);
   add(FixedResultColumns());
   for (BlockColumns& block : blocks) {
     add(block.names.names());
     for (const auto& [verdict, count] : block.verdicts) table.verdicts[verdict] += count;
   }
-  table.columns = std::move(columns.names());
+  table.extra_columns = ApartFrom(results.names(), list.extra_columns);
+  table.columns = kFirst;
+  table.columns.insert(table.columns.end(), table.extra_columns.begin(), table.extra_columns.end());
+  table.columns.insert(table.columns.end(), results.names().begin(), results.names().end());
   return table;
 }
 
@@ -161,8 +175,7 @@ const std::vector<std::string>& RowTexts::Of(const ResultTable::Row& row) {
   };
   put("id", row.task->id);
   put("file", row.task->file);
-  for (std::size_t i = 0; i < table_.list->extra_columns.size(); ++i)
-    put(table_.list->extra_columns[i], row.task->extra[i]);
+  for (std::size_t i = 0; i < table_.extra_columns.size(); ++i) put(table_.extra_columns[i], row.task->extra[i]);
   put("status", NameOf(row.done->status));
   put("message", row.done->message);
   put("sha256", row.done->sha256);
@@ -184,6 +197,7 @@ std::vector<std::string> ReservedColumns() {
   std::vector<std::string> names = kFirst;
   names.insert(names.end(), kOfTask.begin(), kOfTask.end());
   names.insert(names.end(), FixedResultColumns().begin(), FixedResultColumns().end());
+  names.emplace_back("result");  // the member of results.jsonl
   return names;
 }
 

@@ -23,7 +23,9 @@ inline constexpr int kExitMissing = 5;
 struct ResultTable {
   const WorkList* list;
   const Records* records;
-  // id, file, the list's own columns, status, verdict, message, sha256, key, then those of FixedResultColumns and of
+  // The list's own columns; "listed.NAME" where a result has that name.
+  std::vector<std::string> extra_columns;
+  // id, file, extra_columns, status, verdict, message, sha256, key, then those of FixedResultColumns and of
   // every parameter that occurs, in the order of first occurrence by id.
   std::vector<std::string> columns;
   struct Row {

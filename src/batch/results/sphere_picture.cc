@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
@@ -47,17 +48,26 @@ class CoarseScreen {
  public:
   CoarseScreen() {
     for (std::size_t level = 1; level <= kLevels; ++level) least_[level - 1] = LeastOf(level);
+    for (std::size_t step = 0; step < level_.size(); ++step)
+      level_[step] = LevelsUpTo(static_cast<double>(step) / kSteps);
   }
   std::uint8_t Of(double linear) const {
-    const auto next = std::upper_bound(least_.begin(), least_.end(), linear);
-    return static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(255, 4 * (next - least_.begin())));
+    // Beyond the steps, or not a number.
+    const bool is_far = !(linear < kMost);
+    std::size_t level = is_far ? LevelsUpTo(linear) : level_[static_cast<std::size_t>(std::max(0.0, linear) * kSteps)];
+    while (level < kLevels && least_[level] <= linear) ++level;
+    return static_cast<std::uint8_t>(std::min<std::size_t>(255, 4 * level));
   }
 
  private:
   static constexpr std::size_t kLevels = 64;
+  static constexpr double kMost = 2, kSteps = 256;  // steps of 1 / kSteps up to kMost
 
   static std::size_t LevelOf(double linear) { return (ToScreen({linear, linear, linear}, 1).r + 2U) / 4U; }
-  // The least number that is shown by this level. To look it up takes a fifth of the time of ToScreen, which rises.
+  std::size_t LevelsUpTo(double linear) const {
+    return static_cast<std::size_t>(std::upper_bound(least_.begin(), least_.end(), linear) - least_.begin());
+  }
+  // The least number that is shown by this level. To look it up takes a fraction of the time of ToScreen, which rises.
   static double LeastOf(std::size_t level) {
     double below = 0, above = 1e3;
     for (double middle = 0.5 * above; below < middle && middle < above; middle = below + 0.5 * (above - below))
@@ -66,6 +76,7 @@ class CoarseScreen {
   }
 
   std::array<double, kLevels> least_ = {};
+  std::array<std::size_t, static_cast<std::size_t>(kMost* kSteps)> level_ = {};  // of where each step begins
 };
 
 void Paint(const LitSphere& sphere, double exposure, int left, cv::Mat* picture) {
@@ -91,7 +102,8 @@ SpherePicture DrawSpheres(const Material& material, const Measurement& measureme
   if (material.sel) return {};
   const FittedFunction function(material);
   const ChannelColor to_color(measurement.channels);
-  const LitSphere fitted = LightSphere(Shown(function), to_color, function.channels(), kSize);
+  static const std::vector<LitRow> rows = LitRows(kSize);
+  const LitSphere fitted = LightSphere(Shown(function), to_color, function.channels(), rows);
   std::optional<LitSphere> measured;
   if (measurement.isotropic) measured = LightMeasured(NearLight(measurement), to_color, kSize);
   const double exposure = SphereExposure(measured ? *measured : fitted);

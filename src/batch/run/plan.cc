@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <string_view>
 #include <unordered_map>
 
 #include "lobefit/batch/run/run.h"
@@ -31,9 +32,9 @@ bool AreSameFiles(const DoneRecord& done, const Task& task) {
 
 Plan MakePlan(const WorkList& list, const Records& records, const RunOptions& options,
               const std::filesystem::path& out) {
-  std::unordered_map<std::string, std::string> settings;
+  std::unordered_map<std::string_view, std::string_view> settings;
   for (const Task& task : list.tasks) settings.emplace(task.id, task.settings);
-  const std::unordered_map<std::string, const DoneRecord*> latest = LatestDone(records, settings);
+  const std::unordered_map<std::string_view, const DoneRecord*> latest = LatestDone(records, settings);
   Plan plan;
   for (std::size_t i = 0; i < list.tasks.size(); ++i) {
     if (!options.shard.Holds(i)) continue;

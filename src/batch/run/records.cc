@@ -207,9 +207,9 @@ std::string_view RowReader::ReadPlace(const DoneRecord& done, std::uint64_t offs
   return text_;
 }
 
-std::unordered_map<std::string, const DoneRecord*> LatestDone(
-    const Records& records, const std::unordered_map<std::string, std::string>& settings_of) {
-  std::unordered_map<std::string, const DoneRecord*> latest;
+std::unordered_map<std::string_view, const DoneRecord*> LatestDone(
+    const Records& records, const std::unordered_map<std::string_view, std::string_view>& settings_of) {
+  std::unordered_map<std::string_view, const DoneRecord*> latest;
   latest.reserve(settings_of.size());
   for (const DoneRecord& done : records.done) {
     const auto settings = settings_of.find(done.id);

@@ -106,8 +106,9 @@ DoneRecord DoneFromLine(std::string_view text);
 double Now();
 
 // The record that counts of each task that is done with the settings wanted: of several with one key the best one, else
-// the last one. `settings_of` gives a task's settings by id; ids that it does not know are left out.
-std::unordered_map<std::string, const DoneRecord*> LatestDone(
-    const Records& records, const std::unordered_map<std::string, std::string>& settings_of);
+// the last one. `settings_of` gives a task's settings by id; ids that it does not know are left out. The ids of what is
+// given are the records' own.
+std::unordered_map<std::string_view, const DoneRecord*> LatestDone(
+    const Records& records, const std::unordered_map<std::string_view, std::string_view>& settings_of);
 
 }  // namespace lobefit

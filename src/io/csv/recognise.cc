@@ -1,5 +1,6 @@
 // What is taken for rows of a goniometer.
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/header.h"
 #include "lobefit/io/csv/names/columns.h"
+#include "lobefit/io/csv/names/name_rules.h"
 #include "lobefit/io/csv/reader.h"
 
 namespace lobefit {
@@ -36,20 +38,47 @@ bool IsCsv(std::string_view bytes) {
   return false;
 }
 
+namespace {
+
+bool IsDirection(const CsvColumn& column) {
+  return column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed;
+}
+
+// What is there beside directions may hold values, under whatever name; so may what a detector gave, which needs
+// --value-column.
+bool MayHoldValues(const CsvColumn& column) {
+  static constexpr std::array<std::string_view, 8> kSignals = {"radiance", "raw",     "l_o_raw", "counts",
+                                                               "signal",   "voltage", "current", "power"};
+  if (column.role == ColumnRole::kIgnored) return HoldsWord(kSignals, Joined(SplitName(column.name).words));
+  return column.role != ColumnRole::kCoordinate;
+}
+
+// A line of names: of prose that speaks of two angles most words are no names.
+bool IsLineOfNames(const std::vector<std::string_view>& fields) {
+  std::size_t directions = 0, unknown = 0;
+  for (const std::string_view field : fields) {
+    const CsvColumn column = ClassifyColumn(field);
+    directions += IsDirection(column) ? 1 : 0;
+    unknown += column.role == ColumnRole::kUnknown ? 1 : 0;
+  }
+  return directions >= 2 && unknown <= directions;
+}
+
+}  // namespace
+
 bool NamesDirections(const InputFile& file) {
-  const auto is_direction = [](const CsvColumn& column) {
-    return column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed;
-  };
   try {
     const CsvHeader header = ReadCsvHeader(file, "");
     // Angles of incidence alone are a list of what was measured, not a measurement.
     const auto of_light = [](Coordinate coordinate) {
       return coordinate == Coordinate::kThetaI || coordinate == Coordinate::kPhiI || coordinate == Coordinate::kBeta0;
     };
+    // So are directions alone, as a text has them in a table that says what was measured.
+    if (std::none_of(header.columns.begin(), header.columns.end(), MayHoldValues)) return false;
     return header.head_coordinate ||
            std::any_of(header.columns.begin(), header.columns.end(),
                        [&](const CsvColumn& column) {
-                         return is_direction(column) &&
+                         return IsDirection(column) &&
                                 (column.role == ColumnRole::kFixed || !of_light(column.coordinate));
                        }) ||
            std::any_of(header.keys.fixed.begin(), header.keys.fixed.end(),
@@ -63,9 +92,7 @@ bool NamesDirections(const InputFile& file) {
     for (const char separator : {',', ';', '\t', '|', kBlankSeparator}) {
       std::vector<std::string_view> names;
       SplitCsvLine(IsComment(line) ? CommentText(line) : line, separator, &names);
-      const auto directions = std::count_if(names.begin(), names.end(),
-                                            [&](std::string_view name) { return is_direction(ClassifyColumn(name)); });
-      if (directions >= 2) return true;
+      if (IsLineOfNames(names)) return true;
     }
   }
   return false;

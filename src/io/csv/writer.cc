@@ -9,6 +9,7 @@
 #include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/keys.h"
 #include "lobefit/io/csv/head/lines.h"
+#include "lobefit/io/csv/names/columns.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {
@@ -48,6 +49,25 @@ void WriteInstrument(const StatedInstrument& instrument, std::ostream& out) {
 }
 
 }  // namespace
+
+void RequireReadableChannels(const Channels& channels) {
+  if (channels.size() == 1 && channels.wavelengths_nm.empty()) return;
+  constexpr std::string_view kColours = "RGBXYZ";
+  std::size_t rgb = 0, xyz = 0;
+  for (const std::string& name : channels.names) {
+    const CsvColumn column = ClassifyColumn(name);
+    const std::size_t colour = name.size() == 1 ? kColours.find(name[0]) : std::string_view::npos;
+    if (colour != std::string_view::npos) ++(colour < 3 ? rgb : xyz);
+    if (column.role == ColumnRole::kChannel && name.find_first_of(",;\t\"\n\r") == std::string::npos) continue;
+    throw InputError("the channel '" + Excerpt(Printable(name)) +
+                     "' has no name that a column of CSV may have: R G B, X Y Z or a wavelength as 550nm; choose one "
+                     "channel with --channels, or another format");
+  }
+  if (rgb % 3 + xyz % 3 > 0) {
+    throw InputError("CSV holds colours as R G B or X Y Z together, but the channels are " + JoinSome(channels.names) +
+                     "; choose one channel with --channels, or another format");
+  }
+}
 
 void WriteCsv(const Measurement& measurement, const std::vector<std::string>& comments,
               const std::filesystem::path& path, int digits) {

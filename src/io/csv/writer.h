@@ -15,4 +15,7 @@ namespace lobefit {
 void WriteCsv(const Measurement& measurement, const std::vector<std::string>& comments,
               const std::filesystem::path& path, int digits = 17);
 
+// Whether the reader would find the channels again by their names. Throws InputError with the cure where it would not.
+void RequireReadableChannels(const Channels& channels);
+
 }  // namespace lobefit

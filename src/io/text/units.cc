@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lobefit/base/text/same_word.h"
 #include "lobefit/base/text/text.h"
 #include "lobefit/math/vec.h"
 
@@ -22,7 +23,7 @@ struct Spelling {
 template <class Table>
 auto FindSpelling(const Table& table, std::string_view word) -> std::optional<decltype(table[0].value)> {
   for (const auto& entry : table) {
-    if (entry.word == word) return entry.value;
+    if (SameWord(entry.word, word)) return entry.value;
   }
   return std::nullopt;
 }
@@ -120,7 +121,8 @@ bool IsPerSteradian(std::string_view unit) {
       "1/sr",      "/sr",      "sr^-1",     "sr-1",        "sr^(-1)",      "sr**-1",       "persr",
       "1/ster",    "ster^-1",  "invsr",     "1/steradian", "persteradian", "steradian^-1", "inversesteradian",
       "inversesr", "cd/m2/lx", "cd/m^2/lx", "cd/(m2*lx)",  "cd*m^-2*lx^-1"};
-  return std::find(kSpellings.begin(), kSpellings.end(), unit) != kSpellings.end();
+  return std::any_of(kSpellings.begin(), kSpellings.end(),
+                     [&](std::string_view known) { return SameWord(known, unit); });
 }
 
 double ValueScale::Apply(double number) const {
@@ -182,18 +184,16 @@ std::string PlainUnit(std::string_view unit) {
       {"$", ""},
       {"\\", ""},
   }};
+  static constexpr ByFirstByte<kSigns.size()> kSignsByByte(kSigns, [](const auto& sign) { return sign.first; });
   std::string plain;
   bool apart = false;  // a blank before
   while (!unit.empty()) {
     const char c = unit.front();
-    // Names and keys of a file's head are asked for their unit dozens of times: most letters begin no sign.
-    const bool may_be_sign = static_cast<unsigned char>(c) >= 0x80 || c == '{' || c == '}' || c == '$' || c == '\\';
-    const auto* entry = may_be_sign ? std::find_if(kSigns.begin(), kSigns.end(),
-                                                   [&](const auto& sign) { return unit.starts_with(sign.first); })
-                                    : kSigns.end();
-    if (entry != kSigns.end()) {
-      plain += entry->second;
-      unit.remove_prefix(entry->first.size());
+    // Names and keys of a file's head are asked for their unit dozens of times.
+    const std::size_t found = kSignsByByte.Find(unit, [&](std::size_t i) { return unit.starts_with(kSigns[i].first); });
+    if (found < kSigns.size()) {
+      plain += kSigns[found].second;
+      unit.remove_prefix(kSigns[found].first.size());
       continue;
     }
     unit.remove_prefix(1);
@@ -217,7 +217,7 @@ std::optional<ValueScale> ParseValueScale(std::string_view unit) {
   for (const std::string_view word :
        {"a.u.", "au",  "a.u", "arb", "arb.", "arb.u.", "arb.units",  "arbitraryunits", "arbitrary", "counts", "count",
         "cts",  "adu", "dn",  "v",   "mv",   "na",     "normalized", "normalised",     "rel.",      "rel.u.", "rel"}) {
-    if (rest == word) return ValueScale{Form::kLinear, 1, true};
+    if (SameWord(rest, word)) return ValueScale{Form::kLinear, 1, true};
   }
   Form form = Form::kLinear;
   for (const auto& [word, its] : {std::pair{std::string_view("10log10"), Form::kDecibel},
@@ -227,7 +227,7 @@ std::optional<ValueScale> ParseValueScale(std::string_view unit) {
                                   {"ln", Form::kLn},
                                   {"decibel", Form::kDecibel},
                                   {"db", Form::kDecibel}}) {
-    if (!rest.starts_with(word)) continue;
+    if (!BeginsWith(rest, word)) continue;
     form = its;
     rest.remove_prefix(word.size());
     break;
@@ -243,7 +243,7 @@ std::optional<ValueScale> ParseValueScale(std::string_view unit) {
                                      {"pct", 0.01},
                                      {"prozent", 0.01},
                                      {"permille", 0.001}}) {
-    if (!rest.starts_with(word)) continue;
+    if (!BeginsWith(rest, word)) continue;
     rest.remove_prefix(word.size());
     if (rest.starts_with("*") || rest.starts_with("/sr")) rest.remove_prefix(rest[0] == '*' ? 1 : 0);
     if (rest.empty() || IsPerSteradian(rest)) return ValueScale{Form::kLinear, factor, false};

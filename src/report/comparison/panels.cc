@@ -417,7 +417,7 @@ std::optional<Panel> ComparedSpheresPanel(const Compared& compared) {
   if (std::optional<LitSphere> measured = LightMeasured(first.measurement, to_color, kBallPixels))
     balls->push_back({std::move(*measured), "measured", style::kFaint});
   for (const Compared::Entry& entry : compared.models)
-    balls->push_back({LightSphere(Shown(entry.data->fitted), to_color, entry.data->channels(), kBallPixels),
+    balls->push_back({LightSphere(Shown(entry.data->fitted), to_color, entry.data->channels(), LitRows(kBallPixels)),
                       entry.label, entry.color});
   Panel panel;
   panel.id = "spheres";

@@ -13,16 +13,6 @@ namespace {
 
 constexpr double kLeastCover = 0.97;  // of the lit sphere that the samples must speak for
 
-// The pixels of a row that see the light, with both directions in the frame of their point.
-struct LitRow {
-  std::vector<std::size_t> pixel;
-  std::array<std::vector<double>, 6> d;  // wi.x ... wo.z
-
-  DirectionArrays arrays() const {
-    return {d[0].data(), d[1].data(), d[2].data(), d[3].data(), d[4].data(), d[5].data(), pixel.size()};
-  }
-};
-
 void FindLit(int row, int size, LitRow* lit) {
   const Vec3 light = SphereLight(), view = {0, 0, 1};
   lit->pixel.clear();
@@ -83,14 +73,19 @@ LitSphere DarkSphere(int size) {
   return {size, std::vector<std::array<double, 3>>(pixels, {0, 0, 0}), std::vector<std::uint8_t>(pixels, 1)};
 }
 
-LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size) {
-  LitSphere sphere = DarkSphere(size);
-  LitRow lit;
+std::vector<LitRow> LitRows(int size) {
+  std::vector<LitRow> rows(static_cast<std::size_t>(size));
+  for (int row = 0; row < size; ++row) FindLit(row, size, &rows[static_cast<std::size_t>(row)]);
+  return rows;
+}
+
+LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels,
+                      const std::vector<LitRow>& rows) {
+  LitSphere sphere = DarkSphere(static_cast<int>(rows.size()));
   std::vector<std::vector<double>> f_r;
   std::vector<std::uint8_t> known;
   std::vector<double> values(channels);
-  for (int row = 0; row < size; ++row) {
-    FindLit(row, size, &lit);
+  for (const LitRow& lit : rows) {
     brdf(lit.arrays(), &f_r, &known);
     for (std::size_t i = 0; i < lit.pixel.size(); ++i) {
       sphere.known[lit.pixel[i]] = known[i];
@@ -112,7 +107,7 @@ std::optional<LitSphere> LightMeasured(const Measurement& measurement, const Cha
   if (!measurement.isotropic) return std::nullopt;
   const IsotropicLookup lookup(measurement);
   const std::size_t channels = measurement.channels.size();
-  LitSphere sphere = LightSphere(Shown(lookup, channels), to_color, channels, size);
+  LitSphere sphere = LightSphere(Shown(lookup, channels), to_color, channels, LitRows(size));
   if (!IsCovered(sphere)) return std::nullopt;
   return sphere;
 }

@@ -23,6 +23,18 @@ struct LitSphere {
   std::vector<std::uint8_t> known;
 };
 
+// The pixels of a row that see the light, with both directions in the frame of their point.
+struct LitRow {
+  std::vector<std::size_t> pixel;
+  std::array<std::vector<double>, 6> d;  // wi.x ... wo.z
+
+  DirectionArrays arrays() const {
+    return {d[0].data(), d[1].data(), d[2].data(), d[3].data(), d[4].data(), d[5].data(), pixel.size()};
+  }
+};
+// Of a sphere of size x size pixels, whatever its material.
+std::vector<LitRow> LitRows(int size);
+
 // f_r[c][i] of directions above the horizon; known[i] == 0 where it is not known.
 using ShownBrdf = std::function<void(const DirectionArrays& directions, std::vector<std::vector<double>>* f_r,
                                      std::vector<std::uint8_t>* known)>;
@@ -37,7 +49,9 @@ bool IsCovered(const LitSphere& sphere);
 
 // Towards the light; the viewer is at +z.
 Vec3 SphereLight();
-LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels, int size);
+// `rows` as LitRows gives them.
+LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::size_t channels,
+                      const std::vector<LitRow>& rows);
 // The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
 std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size);
 

@@ -76,6 +76,7 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
   if (data.material.model.lobes.empty()) return std::nullopt;
   const ChannelColor to_color(data.measurement.channels);
   const ShownBrdf fitted = Shown(data.fitted);
+  const std::vector<LitRow> rows = LitRows(kLightSize);
   SlopeCoordinates lobe = data.fitted.lobe_shapes()[0];
   // Where a lobe falls by less than the square of the distance most of its light lies far out.
   constexpr double kFarOut = 0.05;
@@ -85,14 +86,14 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
   if (data.measurement.isotropic) {
     const IsotropicLookup lookup(data.measurement);
     const ShownBrdf measured = Shown(lookup, data.channels());
-    spheres->sphere[0] = LightSphere(measured, to_color, data.channels(), kLightSize);
+    spheres->sphere[0] = LightSphere(measured, to_color, data.channels(), rows);
     spheres->measured = IsCovered(spheres->sphere[0]);
     if (spheres->measured)
       spheres->sphere[2] = SkySphere(measured, lobe, to_color, data.channels(), kSkySamples, data.threads);
     // A narrow lobe in a sparse table leaves holes and rings under the sky: that is no measured appearance.
     spheres->sky = spheres->measured && IsCovered(spheres->sphere[2]);
   }
-  spheres->sphere[1] = LightSphere(fitted, to_color, data.channels(), kLightSize);
+  spheres->sphere[1] = LightSphere(fitted, to_color, data.channels(), rows);
   spheres->sphere[3] = SkySphere(fitted, lobe, to_color, data.channels(),
                                  spheres->sky ? kSkySamples : kSkySamplesOfAModel, data.threads);
   // One exposure for a pair: the measured sphere sets it.

@@ -238,7 +238,8 @@ std::string DataJson(const ReportData& data) {
       {"parameters", ParametersJson(data)},
       {"slices", SlicesJson(data)},
       {"table", data.measurement.isotropic ? TableJson(data, to_color) : Json(nullptr)},
-      {"exposure", Rounded(SphereExposure(LightSphere(Shown(data.fitted), to_color, data.channels(), 128)), 12)}};
+      {"exposure",
+       Rounded(SphereExposure(LightSphere(Shown(data.fitted), to_color, data.channels(), LitRows(128))), 12)}};
   // Within a <script> element only '<' could end it; JSON has it in strings alone.
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
   for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);

@@ -217,9 +217,12 @@ Material Scatter(std::size_t channels) {
 std::string TruthJson(const ReportData& data) {
   constexpr int kSize = 40;
   const ChannelColor to_color(data.measurement.channels);
-  const double exposure = SphereExposure(LightSphere(Shown(data.fitted), to_color, data.channels(), 128));
+  const auto light = [&](int size) {
+    return LightSphere(Shown(data.fitted), to_color, data.channels(), LitRows(size));
+  };
+  const double exposure = SphereExposure(light(128));
   std::string bytes;
-  for (const auto& color : LightSphere(Shown(data.fitted), to_color, data.channels(), kSize).color) {
+  for (const auto& color : light(kSize).color) {
     const Rgb c = ToScreen(color, exposure);
     for (const std::uint8_t v : {c.r, c.g, c.b}) bytes.push_back(static_cast<char>(v));
   }

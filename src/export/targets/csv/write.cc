@@ -18,6 +18,7 @@ WrittenFiles WriteCsvSamples(const FittedBrdf& fit, const WriteContext& context)
   for (int a = 0; a < azimuths; ++a) layout.azimuths.push_back(2 * kPi * a / azimuths);
   layout.detector_step = DegreesToRadians(6);
   const Measurement samples = Synthesise(Goniometer(layout), fit.channels(), fit.function(), {}, 0);
+  RequireReadableChannels(samples.channels);
   WriteCsv(samples, context.header, path);
   Measurement back = ReadMeasurement(path);
   back.isotropic = fit.IsIsotropic();

@@ -72,7 +72,7 @@ bool ClassifyAngle(const NameList& words, bool magnitude, CsvColumn* column) {
   std::size_t polar = 0, azimuthal = 0, lights = 0, viewers = 0, angles = 0, others = 0, elevations = 0, relatives = 0,
               sines = 0, cosines = 0, speculars = 0;
   bool light_first = false;
-  for (const std::string& word : words) {
+  for (const std::string_view word : words) {
     if (HoldsWord(kPolar, word)) {
       ++polar;
     } else if (HoldsWord(kElevation, word)) {

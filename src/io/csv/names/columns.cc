@@ -150,7 +150,7 @@ bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {
                                                                "plane", "position", "setting",     "axis",
                                                                "type",  "of",       "the",         "config"};
   bool polarisation = false, viewer = false, value = false;
-  for (const std::string& word : words) {
+  for (const std::string_view word : words) {
     const bool names_it = HoldsWord(kPolarisation, word);
     polarisation = polarisation || names_it;
     viewer = viewer || word == "analyzer" || word == "analyser" || IsViewerWord(word);
@@ -242,6 +242,8 @@ void ParseUnit(CsvColumn* column) {
 }  // namespace
 
 bool ClassifyFixed(const NameList& words, CsvColumn* column) {
+  const auto has_digit = [](const std::string& word) { return word.find_first_of("0123456789") != std::string::npos; };
+  if (std::none_of(words.begin(), words.end(), has_digit)) return false;
   std::optional<double> number;
   NameList rest;
   std::string unit = column->unit;
@@ -300,7 +302,7 @@ CsvColumn ClassifyColumn(std::string_view name) {
   }
   const std::string joined = Joined(split.words);
   const auto* synonym =
-      std::find_if(kSynonyms.begin(), kSynonyms.end(), [&](const Synonym& s) { return s.name == joined; });
+      std::find_if(kSynonyms.begin(), kSynonyms.end(), [&](const Synonym& s) { return SameWord(s.name, joined); });
   const NameList meaning = WithoutFillers(split.words);
   const CsvColumn blank = column;
   // Each rule starts from the bare name: one that does not match may have set some of what the next would not.

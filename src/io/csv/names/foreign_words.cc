@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "lobefit/base/text/same_word.h"
+
 namespace lobefit {
 namespace {
 
@@ -238,6 +240,11 @@ constexpr std::array<Translation, 72> kForeignWords = {{
     {"valeur", "value"},
 }};
 
+constexpr auto kForeignOf = [](const Translation& translation) { return translation.foreign; };
+constexpr ByFirstByte<kScripts.size()> kScriptsByByte(kScripts, kForeignOf);
+constexpr ByFirstByte<kForeignWords.size()> kForeignWordsByByte(kForeignWords, kForeignOf);
+constexpr ByFirstByte<kParts.size()> kPartsByByte(kParts, kForeignOf);
+
 // Two bytes of UTF-8 as a small Cyrillic letter; empty where they are none.
 std::string CyrillicLetter(std::string_view text) {
   if (text.size() < 2) return "";
@@ -252,13 +259,15 @@ std::string CyrillicLetter(std::string_view text) {
 // Parts that make up the whole of the word.
 bool Decompose(std::string_view word, std::vector<std::string_view>* english) {
   if (word.empty()) return true;
-  for (const Translation& part : kParts) {
-    if (!word.starts_with(part.foreign)) continue;
+  const std::size_t found = kPartsByByte.Find(word, [&](std::size_t i) {
+    const Translation& part = kParts[i];
+    if (!word.starts_with(part.foreign)) return false;
     english->push_back(part.english);
     if (Decompose(word.substr(part.foreign.size()), english)) return true;
     english->pop_back();
-  }
-  return false;
+    return false;
+  });
+  return found < kParts.size();
 }
 
 }  // namespace
@@ -266,15 +275,13 @@ bool Decompose(std::string_view word, std::vector<std::string_view>* english) {
 std::string TranslateScripts(std::string_view name) {
   std::string text;
   while (!name.empty()) {
-    // Of the words of kScripts only "+-" and its like begin in ASCII.
-    const bool may_begin = static_cast<unsigned char>(name.front()) >= 0x80 || name.front() == '+';
-    const auto* entry = may_begin ? std::find_if(kScripts.begin(), kScripts.end(),
-                                                 [&](const Translation& t) { return name.starts_with(t.foreign); })
-                                  : kScripts.end();
-    if (entry != kScripts.end()) {
-      const bool bracket = entry->english.size() == 1;
-      text += bracket ? std::string(entry->english) : " " + std::string(entry->english) + " ";
-      name.remove_prefix(entry->foreign.size());
+    const std::size_t found =
+        kScriptsByByte.Find(name, [&](std::size_t i) { return name.starts_with(kScripts[i].foreign); });
+    if (found < kScripts.size()) {
+      const std::string english(kScripts[found].english);
+      const bool bracket = english.size() == 1;
+      text += bracket ? english : " " + english + " ";
+      name.remove_prefix(kScripts[found].foreign.size());
       continue;
     }
     std::string letter = CyrillicLetter(name);
@@ -296,9 +303,9 @@ std::string TranslateScripts(std::string_view name) {
 }
 
 std::vector<std::string_view> TranslateWord(std::string_view word) {
-  const auto* entry =
-      std::find_if(kForeignWords.begin(), kForeignWords.end(), [&](const Translation& t) { return t.foreign == word; });
-  if (entry != kForeignWords.end()) return {entry->english};
+  const std::size_t known =
+      kForeignWordsByByte.Find(word, [&](std::size_t i) { return SameWord(kForeignWords[i].foreign, word); });
+  if (known < kForeignWords.size()) return {kForeignWords[known].english};
   constexpr std::size_t kLongest = 60;
   std::vector<std::string_view> english;
   if (word.size() > kLongest || !Decompose(word, &english)) return {};

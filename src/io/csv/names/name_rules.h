@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lobefit/base/text/same_word.h"
 #include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/csv/names/words.h"
 
@@ -17,7 +18,7 @@ using NameList = std::vector<std::string>;
 
 template <std::size_t N>
 bool HoldsWord(const std::array<std::string_view, N>& set, std::string_view word) {
-  return std::find(set.begin(), set.end(), word) != set.end();
+  return std::any_of(set.begin(), set.end(), [&](std::string_view known) { return SameWord(known, word); });
 }
 
 // "incident_angle".

@@ -93,9 +93,9 @@ constexpr std::array<ValueName, 60> kValues = {{
     {"rt", ValueKind::kReading},
 }};
 
-const ValueName* FindValue(const std::string& joined) {
+const ValueName* FindValue(std::string_view joined) {
   for (const ValueName& value : kValues) {
-    if (value.name == joined) return &value;
+    if (SameWord(value.name, joined)) return &value;
   }
   return nullptr;
 }
@@ -142,7 +142,8 @@ bool IsFiller(std::string_view word) { return HoldsWord(kFillers, word); }
 bool ClassifyWavelengthColumn(const NameList& words, CsvColumn* column) {
   static constexpr std::array<std::string_view, 9> kNames = {"wavelength",   "lambda", "wl",          "wave", "wavelen",
                                                              "wellenlaenge", "wavel",  "wellenlange", "wvl"};
-  const std::string joined = Joined(words);
+  const std::string name = Joined(words);
+  const std::string_view joined = name;
   const bool known = (words.size() <= 2 && !words.empty() && HoldsWord(kNames, words[0]) &&
                       (words.size() == 1 || words[1] == "i" || words[1] == "in" || words[1] == "incident")) ||
                      joined == "longueur_d_onde" || joined == "lunghezza_d_onda" || joined == "longitud_onda" ||
@@ -163,7 +164,7 @@ bool ClassifyChannel(NameList words, CsvColumn* column) {
   if (words.size() > 1 && (words[0] == "lambda" || words[0] == "wavelength" || words[0] == "wl"))
     words.erase(words.begin());
   if (words.size() != 1) return false;
-  const std::string& word = words[0];
+  const std::string_view word = words[0];
   static constexpr std::array<std::pair<std::string_view, char>, 9> kLetters = {{{"r", 'R'},
                                                                                  {"g", 'G'},
                                                                                  {"b", 'B'},
@@ -192,7 +193,7 @@ bool ClassifySpread(const NameWords& name, CsvColumn* column) {
   bool spread = Joined(name.words) == "s_d", expanded = name.function == "U" || letter,
        standard = name.function == "u" || name.function == "s";
   for (std::size_t i = 0; i < name.words.size(); ++i) {
-    const std::string& word = name.words[i];
+    const std::string_view word = name.words[i];
     const bool last_number = word.size() == 1 && word[0] >= '1' && word[0] <= '9';
     if (HoldsWord(kSpread, word) || word == "variance" || word == "var" || word == "ubrdf" || word == "ubsdf") {
       spread = true;
@@ -218,7 +219,7 @@ bool ClassifySpread(const NameWords& name, CsvColumn* column) {
                FindValue(word) != nullptr || word == "%") {
       if (word == "%") column->unit = "%";
     } else {
-      rest.push_back(word);
+      rest.emplace_back(word);
     }
   }
   static constexpr std::array<std::string_view, 5> kFunctions = {"u", "U", "s", "sigma", "std"};
@@ -266,7 +267,8 @@ bool ClassifyValue(const NameWords& name, CsvColumn* column) {
     column->value_kind = ValueKind::kReflectanceFactor;
     return true;
   }
-  const std::string joined = Joined(words);
+  const std::string whole = Joined(words);
+  const std::string_view joined = whole;
   const ValueName* value = FindValue(joined);
   if (value == nullptr && name.words != words) value = FindValue(Joined(name.words));
   if (value != nullptr) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "lobefit/base/text/same_word.h"
 #include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/names/foreign_words.h"
 #include "lobefit/io/text/units.h"
@@ -107,6 +108,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 92> kLetters
     {"ý", "y"},
 }};
 
+constexpr ByFirstByte<kLetters.size()> kLettersByByte(kLetters, [](const auto& letter) { return letter.first; });
+
 bool IsLower(char c) { return c >= 'a' && c <= 'z'; }
 bool IsUpper(char c) { return c >= 'A' && c <= 'Z'; }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
@@ -115,13 +118,11 @@ bool IsLetter(char c) { return IsLower(c) || IsUpper(c); }
 std::string ToAscii(std::string_view name) {
   std::string ascii;
   while (!name.empty()) {
-    const bool is_ascii = static_cast<unsigned char>(name.front()) < 0x80;
-    const auto* entry = is_ascii ? kLetters.end()
-                                 : std::find_if(kLetters.begin(), kLetters.end(),
-                                                [&](const auto& letter) { return name.starts_with(letter.first); });
-    if (entry != kLetters.end()) {
-      ascii += entry->second;
-      name.remove_prefix(entry->first.size());
+    const std::size_t found =
+        kLettersByByte.Find(name, [&](std::size_t i) { return name.starts_with(kLetters[i].first); });
+    if (found < kLetters.size()) {
+      ascii += kLetters[found].second;
+      name.remove_prefix(kLetters[found].first.size());
       continue;
     }
     ascii += name.front();
@@ -209,17 +210,18 @@ void AppendWord(std::string word, NameWords* split) {
       "e", "0",  "d",   "h",        "diff", "obs", "det", "sun",  "light", "theta", "phi", "beta", "half"};
   // "inc10", "aoi30": an angle in the name.
   for (const std::string_view head : {std::string_view("aoi"), std::string_view("inc")}) {
-    if (!word.starts_with(head) || !ParseDouble(std::string_view(word).substr(head.size()))) continue;
+    if (!BeginsWith(word, head) || !ParseDouble(std::string_view(word).substr(head.size()))) continue;
     words->emplace_back(head);
     words->push_back(word.substr(head.size()));
     return;
   }
   for (const std::string_view head : kHeads) {
-    if (!word.starts_with(head) || word.size() == head.size()) continue;
-    const std::string tail = word.substr(head.size());
-    if (std::find(kTails.begin(), kTails.end(), tail) == kTails.end()) continue;
+    if (!BeginsWith(word, head) || word.size() == head.size()) continue;
+    const std::string_view tail = std::string_view(word).substr(head.size());
+    if (std::none_of(kTails.begin(), kTails.end(), [&](std::string_view known) { return SameWord(known, tail); }))
+      continue;
     words->emplace_back(head);
-    words->push_back(tail);
+    words->emplace_back(tail);
     return;
   }
   if (!word.empty()) words->push_back(std::move(word));
@@ -229,12 +231,15 @@ void AppendWord(std::string word, NameWords* split) {
 
 NameWords SplitName(std::string_view name) {
   NameWords split;
-  std::string text(Trim(TranslateScripts(name)));
+  // All that stands for something else begins beyond ASCII, but for "+-".
+  const bool plain =
+      std::none_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80 || c == '+'; });
+  std::string text(plain ? Trim(name) : Trim(TranslateScripts(name)));
   if (text.size() > 1 && text.front() == '"' && text.back() == '"')
     text = std::string(Trim(std::string_view(text).substr(1, text.size() - 2)));
   TakeBracketedUnit(&text, &split.unit);
   if (split.unit.empty()) TakeTrailingUnit(&text, &split.unit);
-  text = ToAscii(text);
+  if (!plain) text = ToAscii(text);
   split.magnitude = text.find('|') != std::string::npos;
   // A function of one argument: its name, and what it is of.
   const std::string_view trimmed = Trim(text);
