@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/files/file.h"
 #include "lobefit/base/text/text.h"
 #include "lobefit/batch/collect.h"
 #include "lobefit/batch/list/inputs.h"
