@@ -26,16 +26,18 @@ class DirectionMerger {
     if (last_ < kept_.size() && IsWithin(w, kept_[last_], same_)) return last_;
     const auto mine = static_cast<std::uint32_t>(kept_.size());
     std::uint32_t found = mine;
-    ForNear(w, [&](std::uint32_t other) {
+    ForNear(w, resolution_ / 4, [&](std::uint32_t other) {
       if (found == mine && IsWithin(w, kept_[other], same_)) found = other;
     });
     if (found == mine) {
       parent_.push_back(mine);
-      ForNear(w, [&](std::uint32_t other) {
+      ForNear(w, resolution_, [&](std::uint32_t other) {
         if (IsWithin(w, kept_[other], near_)) parent_[Root(other)] = mine;
       });
       kept_.push_back(w);
-      cells_[CellOf(w.x, w.y, w.z)].push_back(mine);
+      const auto [cell, is_new] = newest_.try_emplace(Packed(CellOf(w.x), CellOf(w.y), CellOf(w.z)), mine);
+      before_.push_back(is_new ? mine : cell->second);
+      cell->second = mine;
     }
     return last_ = found;
   }
@@ -62,20 +64,28 @@ class DirectionMerger {
     const Vec3 d = a - b;
     return Dot(d, d) <= chord2;
   }
-  // Cells are cubes with the resolution as edge: what is near lies in the direction's own or one that touches it.
-  std::int64_t CellOf(double x, double y, double z) const {
-    std::int64_t cell = 0;
-    for (const double coordinate : {x, y, z})
-      cell = cell * (std::int64_t{1} << 21) + static_cast<std::int64_t>(std::floor(coordinate / resolution_));
-    return cell;
+  // Cells are cubes of twice the resolution: what is within it lies in few of them.
+  std::int64_t CellOf(double coordinate) const {
+    return static_cast<std::int64_t>(std::floor(coordinate / (2 * resolution_)));
   }
+  static std::int64_t Packed(std::int64_t x, std::int64_t y, std::int64_t z) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 21;
+    return (x * kMost + y) * kMost + z;
+  }
+  // Visits what may lie within `reach`, at most the resolution.
   template <class Visit>
-  void ForNear(const Vec3& w, const Visit& visit) const {
-    for (int k = 0; k < 27; ++k) {
-      const auto cell = cells_.find(CellOf(w.x + (k % 3 - 1) * resolution_, w.y + (k / 3 % 3 - 1) * resolution_,
-                                           w.z + (k / 9 - 1) * resolution_));
-      if (cell == cells_.end()) continue;
-      for (const std::uint32_t other : cell->second) visit(other);
+  void ForNear(const Vec3& w, double reach, const Visit& visit) const {
+    for (std::int64_t x = CellOf(w.x - reach); x <= CellOf(w.x + reach); ++x) {
+      for (std::int64_t y = CellOf(w.y - reach); y <= CellOf(w.y + reach); ++y) {
+        for (std::int64_t z = CellOf(w.z - reach); z <= CellOf(w.z + reach); ++z) {
+          const auto cell = newest_.find(Packed(x, y, z));
+          if (cell == newest_.end()) continue;
+          for (std::uint32_t other = cell->second;; other = before_[other]) {
+            visit(other);
+            if (before_[other] == other) break;
+          }
+        }
+      }
     }
   }
   std::uint32_t Root(std::uint32_t k) {
@@ -87,7 +97,9 @@ class DirectionMerger {
   std::uint32_t last_ = 0;
   std::vector<Vec3> kept_;
   std::vector<std::uint32_t> parent_;
-  std::unordered_map<std::int64_t, std::vector<std::uint32_t>> cells_;
+  // The kept direction that came last to a cell, and to each the one before it, itself where there is none.
+  std::unordered_map<std::int64_t, std::uint32_t> newest_;
+  std::vector<std::uint32_t> before_;
 };
 
 // Groups in the order of the means' polar angles, those within the resolution by azimuth in [0, 2 pi).

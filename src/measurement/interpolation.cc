@@ -43,8 +43,8 @@ bool Factor(Matrix* matrix, std::size_t n) {
   return true;
 }
 
-// The first component of the solution of L L^T x = b.
-double FirstUnknown(const Matrix& l, std::size_t n, std::array<double, kUnknowns> b) {
+// The solution of L L^T x = b.
+std::array<double, kUnknowns> Solve(const Matrix& l, std::size_t n, std::array<double, kUnknowns> b) {
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < i; ++k) b[i] -= l[i][k] * b[k];
     b[i] /= l[i][i];
@@ -53,7 +53,7 @@ double FirstUnknown(const Matrix& l, std::size_t n, std::array<double, kUnknowns
     for (std::size_t k = i + 1; k < n; ++k) b[i] -= l[k][i] * b[k];
     b[i] /= l[i][i];
   }
-  return b[0];
+  return b;
 }
 
 }  // namespace
@@ -80,7 +80,9 @@ class Interpolator::Nearby {
 };
 
 Interpolator::Interpolator(const Measurement& measurement)
-    : isotropic_(measurement.isotropic), dimension_(measurement.isotropic ? 3 : 4) {
+    : isotropic_(measurement.isotropic),
+      dimension_(measurement.isotropic ? 3 : 4),
+      channels_(measurement.samples.values.size()) {
   const Samples& samples = measurement.samples;
   std::vector<Point> points(samples.size());
   samples_.resize(samples.size());
@@ -91,12 +93,13 @@ Interpolator::Interpolator(const Measurement& measurement)
   Build(0, samples.size(), 0, points);
   points_.resize(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) points_[i] = points[samples_[i]];
-  for (const std::vector<double>& values : samples.values) {
-    std::vector<double>& ordered = values_.emplace_back(samples.size());
-    std::vector<double>& logarithms = logarithms_.emplace_back(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      ordered[i] = values[samples_[i]];
-      logarithms[i] = ordered[i] > 0 ? std::log(ordered[i]) : 0.0;
+  values_.resize(samples.size() * channels_);
+  logarithms_.resize(values_.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const double value = samples.values[c][samples_[i]];
+      values_[i * channels_ + c] = value;
+      logarithms_[i * channels_ + c] = value > 0 ? std::log(value) : 0.0;
     }
   }
 }
@@ -192,22 +195,35 @@ void Interpolator::Evaluate(const Vec3& wi, const Vec3& wo, double* values) cons
   const double weight_sum = normal[0][0];
   const bool solvable = Factor(&normal, n);
 
-  for (std::size_t c = 0; c < values_.size(); ++c) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+  // b0 is linear in the values, with the same factors for all channels: w_i row_i . (N^-1 e_0).
+  std::array<double, kNeighbours> factors;
+  const std::array<double, kUnknowns> first =
+      solvable ? Solve(normal, n, {1}) : std::array<double, kUnknowns>{1 / weight_sum};
+  for (std::size_t i = 0; i < count; ++i) {
+    factors[i] = 0;
+    for (std::size_t a = 0; a < n; ++a) factors[i] += rows[i][a] * first[a];
+    factors[i] *= weights[i];
+  }
+  constexpr std::size_t kPart = 16;  // channels at a time
+  for (std::size_t begin = 0; begin < channels_; begin += kPart) {
+    const std::size_t part = std::min(kPart, channels_ - begin);
+    std::array<double, kPart> low, high, linear = {}, logarithmic = {};
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < count; ++i) {
-      const double value = values_[c][nearby[i].place];
-      low = std::min(low, value);
-      high = std::max(high, value);
+      const double* const value = &values_[nearby[i].place * channels_ + begin];
+      const double* const logarithm = &logarithms_[nearby[i].place * channels_ + begin];
+      for (std::size_t c = 0; c < part; ++c) {
+        low[c] = std::min(low[c], value[c]);
+        high[c] = std::max(high[c], value[c]);
+        linear[c] += factors[i] * value[c];
+        logarithmic[c] += factors[i] * logarithm[c];
+      }
     }
-    const bool logarithmic = low > 0;
-    const std::vector<double>& from = logarithmic ? logarithms_[c] : values_[c];
-    std::array<double, kUnknowns> right = {};
-    for (std::size_t i = 0; i < count; ++i) {
-      const double weighted = weights[i] * from[nearby[i].place];
-      for (std::size_t a = 0; a < n; ++a) right[a] += rows[i][a] * weighted;
+    for (std::size_t c = 0; c < part; ++c) {
+      values[begin + c] = low[c] > 0 ? std::clamp(std::exp(logarithmic[c]), low[c] / 2, high[c] * 2)
+                                     : std::clamp(linear[c], low[c], high[c]);
     }
-    const double answer = solvable ? FirstUnknown(normal, n, right) : right[0] / weight_sum;
-    values[c] = logarithmic ? std::clamp(std::exp(answer), low / 2, high * 2) : std::clamp(answer, low, high);
   }
 }
 

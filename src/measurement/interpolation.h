@@ -20,7 +20,7 @@ class Interpolator {
   // Keeps a copy of the values. Domain: at least one sample.
   explicit Interpolator(const Measurement& measurement);
 
-  std::size_t channels() const { return values_.size(); }
+  std::size_t channels() const { return channels_; }
   // f_r at unit directions above the horizon, one value a channel. Safe from several threads.
   void Evaluate(const Vec3& wi, const Vec3& wo, double* values) const;
   // The sample nearest to a pair of directions (not to its exchanged pair), where it is nearer than about `within`
@@ -47,10 +47,10 @@ class Interpolator {
               Nearby* nearby) const;
 
   bool isotropic_;
-  std::size_t dimension_;
-  std::vector<Point> points_;                             // in the order of the tree: the median of a range is its root
-  std::vector<std::size_t> samples_;                      // sample of each point
-  std::vector<std::vector<double>> values_, logarithms_;  // [channel][place]; the logarithm of a value <= 0 is not used
+  std::size_t dimension_, channels_;
+  std::vector<Point> points_;                // in the order of the tree: the median of a range is its root
+  std::vector<std::size_t> samples_;         // sample of each point
+  std::vector<double> values_, logarithms_;  // [place][channel]; the logarithm of a value <= 0 is not used
 };
 
 // The same as a BrdfFunction that owns its data.
