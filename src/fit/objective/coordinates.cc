@@ -15,8 +15,6 @@ constexpr const char* kSlopeNames[] = {"slope_x", "slope_y", "ln a", "b", "ln c"
 constexpr double kSlopeLow[] = {-10, -10, -9.2103403719761836, -10, -9.2103403719761836};
 constexpr double kSlopeHigh[] = {10, 10, 2.302585092994046, 10, 2.302585092994046};
 
-// Below, Student's slopes have no mean.
-constexpr double kLeastGamma = 1.5;
 // tau of the coefficients' prior. Without data a coefficient stays within it; 5 % noise and 40 samples determine those
 // within the data to a tenth of it.
 constexpr double kProfileSpread = 2;
@@ -102,10 +100,6 @@ void Layout::AddProfile(std::size_t lobe, const std::vector<Parameter>& paramete
       coordinates_.push_back({parameter.name, low, high, 1 / (kProfileSpread * kProfileSpread)});
     }
   }
-}
-
-double Layout::LeastExponent(std::size_t lobe) const {
-  return FamilyOf(recipe_.model.lobes[lobe].ndf) == Family::kStudent ? kLeastGamma : 0.0;
 }
 
 std::vector<double> Layout::ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes) const {

@@ -129,7 +129,10 @@ class Layout {
   std::vector<double> ProfileAt(std::size_t lobe, const double* u, std::vector<double>* slopes = nullptr) const;
   // Of lobes with an exponent, whose coordinate is the logarithm of what it has above this.
   bool IsExponent(std::size_t lobe) const { return HasExponent(recipe_.model.lobes[lobe].ndf); }
-  double LeastExponent(std::size_t lobe) const;
+  double LeastExponent(std::size_t lobe) const {
+    constexpr double kLeastGamma = 1.5;  // below, Student's slopes have no mean
+    return FamilyOf(recipe_.model.lobes[lobe].ndf) == Family::kStudent ? kLeastGamma : 0.0;
+  }
   void AddAngles();
   void AddHalfAngles();
   // Sets the lobes' rules at `u` and those of the half angles' columns, where there are such.
