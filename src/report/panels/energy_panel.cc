@@ -38,7 +38,7 @@ void Draw(const ReportData& data, const Energy& energy, Canvas* canvas, const Bo
     curve(energy.albedo[c], {data.channel_colors[data.shown_channels[c]], 1.5});
   axes.DrawFrame(canvas, x_ticks, y_ticks);
   axes.DrawXLabel(canvas, "θ_i  (degrees), φ_i = 0");
-  axes.DrawYLabel(canvas, "share of the light", 38);
+  axes.DrawYLabel(canvas, "share of the light", energy.high < 0.1 ? 47 : 38);  // small numbers are longer
   // Legend under the diagram: line, words.
   double y = frame.bottom() + 58;
   const auto entry = [&](const std::string& text, const std::vector<Stroke>& strokes) {
