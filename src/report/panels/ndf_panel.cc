@@ -204,7 +204,7 @@ void Draw(const NdfPicture& ndf, Canvas* canvas, const Box& content) {
   }
   axes.DrawFrame(canvas, x_ticks, y_ticks);
   axes.DrawXLabel(canvas, "slope  −m_x / m_z");
-  axes.DrawYLabel(canvas, "slope  −m_y / m_z", 38);
+  axes.DrawYLabel(canvas, "slope  −m_y / m_z", ndf.half < 0.02 ? 47 : 38);  // small numbers are longer
   double y = frame.bottom() + 58;
   const auto line = [&](const std::string& text) {
     canvas->Text({content.x, y}, text, {.size = style::kNoteSize, .color = style::kSecondary, .markup = true});
