@@ -60,7 +60,8 @@ void FileBytes::Reserve(std::size_t bytes) {
   constexpr std::size_t kLargePage = std::size_t{1} << 21, kSmall = std::size_t{1} << 16;
   const std::size_t unit = bytes > kLargePage ? kLargePage : kSmall;
   const std::size_t capacity = std::max(unit, (bytes + unit - 1) / unit * unit);
-  // What grows is moved by its pages, so that a long pipe is not in memory twice; the kernel moves only what has no advice.
+  // What grows is moved by its pages, so that a long pipe is not in memory twice; the kernel moves only what has no
+  // advice.
   const bool grows = size_ > 0;
   char* const memory =
       static_cast<char*>(grows ? std::realloc(memory_.get(), capacity) : std::aligned_alloc(unit, capacity));

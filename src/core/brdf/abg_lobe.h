@@ -1,6 +1,6 @@
 // The ABg lobe of polished and finely ground surfaces, which scatter by a power of the distance from the mirror
-// direction in direction cosines: f_r = A / (B + |beta - beta_0|^g), with beta - beta_0 = (wi + wo)_xy. It does not
-// change with the incidence [Harvey]; MATH.md section 8.7, and is what stray-light programs take.
+// direction in direction cosines: f_r = A / (B + |beta - beta_0|^g), with beta - beta_0 = (wi + wo)_xy. It is what
+// stray-light programs take, and its shape does not change with the incidence [Harvey; MATH.md section 8.7].
 //
 // As ABg is written in them; changed from print: the width is named as that of other lobes, in slopes of the half
 // vector, whose part along the surface is |beta - beta_0| / 2 at small angles, and the height as a reflectance, so that
@@ -24,7 +24,7 @@ void AbgLobe(const DirectionArrays& directions, const SlopeCoordinates& shape, d
              double* cos_d, double* gradient);
 
 // Integral of f_r cos_theta_o over the hemisphere at scale 1, the total integrated scatter of wi: over the unit disc of
-// beta, by a product rule (relative error below 1e-6 to 85 degrees of incidence; 1e-3 at 90).
+// beta, by a product rule (relative error below 1e-5 to 80 degrees of incidence, which is tested).
 double AbgAlbedo(const SlopeCoordinates& shape, double g, const Vec3& wi);
 
 // What the lobe shows of normals: D with D / 4 the lobe where the half vector is wm and wi near it. Not normalised:

@@ -33,8 +33,8 @@ LobeShape ShapeAt(const Lobe& lobe, const std::vector<double>* values);
 // ggx_lobe.h, ShapeParameters(lobe) arrays: by the slope coordinates, then by gamma or q. GGX with separable or
 // height-correlated masking is evaluated in SIMD (some 80 million samples a second and core), profiles and Student's
 // with these by their tables (some 10), every other lobe by its general form (one to three).
-// Round distributions on the sphere read the width a only. An ABg lobe is its f_r (abg_lobe.h). A retro lobe is evaluated at the mirrored wi. [Heitz eq 29],
-// microfacet.h.
+// Round distributions on the sphere read the width a only. A retro lobe is evaluated at the mirrored wi, an ABg lobe is
+// its f_r (abg_lobe.h). [Heitz eq 29], microfacet.h.
 void SpecularLobe(const DirectionArrays& directions, const Lobe& lobe, const LobeShape& shape, double* specular,
                   double* cos_d, double* gradient);
 

@@ -14,7 +14,8 @@ struct FacetGrid {
 };
 
 // Directional albedo, integral of f_r cos(theta_o) over wo, a channel; wi away from the surface. The specular part is
-// integrated over each lobe's slopes, that of an ABg lobe over direction cosines (abg_lobe.h); a Lambertian part exactly, diffuse microfacets over 24 x 48 directions.
+// integrated over each lobe's slopes, that of an ABg lobe over direction cosines (abg_lobe.h); a Lambertian part
+// exactly, diffuse microfacets over 24 x 48 directions.
 std::vector<double> DirectionalAlbedo(const Model& model, const ParameterValues& values, std::size_t channels,
                                       const Vec3& wi, const FacetGrid& grid = {});
 

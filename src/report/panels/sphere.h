@@ -55,8 +55,8 @@ LitSphere LightSphere(const ShownBrdf& brdf, const ChannelColor& to_color, std::
 // The measured one; nothing where the measurement is not isotropic or does not speak for nearly the whole sphere.
 std::optional<LitSphere> LightMeasured(const Measurement& measurement, const ChannelColor& to_color, int size);
 
-// Under an analytic sky with a low sun, 104 pixels wide. Light comes from `count` directions, a multiple
-// of 3: a third drawn from the density of slopes of `lobe`, a third by the cosine, a third around the sun, weighted by the balance
+// Under an analytic sky with a low sun, 104 pixels wide. Light comes from `count` directions, a multiple of 3: a third
+// drawn from the density of slopes of `lobe`, a third by the cosine, a third around the sun, weighted by the balance
 // heuristic; the same ones for any brdf, so that two spheres can be compared.
 LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& lobe, const ChannelColor& to_color,
                     std::size_t channels, int count, int threads);
