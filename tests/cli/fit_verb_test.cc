@@ -64,6 +64,17 @@ TEST_F(FitVerb, SaysTheScatterOfAMirrorAsStrayLightProgramsTakeIt) {
   EXPECT_NEAR(abg["total_integrated_scatter"][0]["share"][0].get<double>(), 0.0198, 2e-4);
 }
 
+TEST_F(FitVerb, TakesTheNoiseOfTheReadingsAndRefusesWhatIsNone) {
+  const std::string fit = "lobefit fit $SOURCE/samples/satin_plastic.csv --no-report --json ";
+  const ProgramResult known = Shell(fit + "--recipe ggx --noise-model floor=0.001,relative=0.03");
+  EXPECT_EQ(nlohmann::json::parse(known.out)["recipe"]["metric"], "asinh");
+  for (const char* bad : {"--recipe ggx --noise-model floor=0.001", "--recipe ggx --noise-model 0.03",
+                          "--recipe sel --noise-model floor=0.001,relative=0.03"}) {
+    const ProgramResult refused = Shell(fit + bad);
+    EXPECT_EQ(refused.exit_code, 2) << bad << refused.err;
+  }
+}
+
 TEST_F(FitVerb, TakesARecipeByNameOrFileAndAPartOfTheFile) {
   WriteWholeFile(folder_ / "mine.toml", "metric = \"cube-root\"\n[[lobe]]\nndf = \"ggx\"\n");
   const ProgramResult by_file =

@@ -94,9 +94,9 @@ void InstrumentOptions::Apply(Recipe* recipe) const {
     recipe->instrument.alignment->prior = DegreesToRadians(alignment_deg_);
   }
   recipe->instrument.offset = recipe->instrument.offset || offset_;
-  if (recipe->sel &&
-      (source_deg_ >= 0 || detector_deg_ >= 0 || source_prior_deg_ > 0 || detector_prior_deg_ > 0 || across_deg_ > 0 ||
-       !mean_.empty() || recipe->instrument.drift || recipe->instrument.alignment || recipe->instrument.offset)) {
+  if (recipe->sel && (source_deg_ >= 0 || detector_deg_ >= 0 || source_prior_deg_ > 0 || detector_prior_deg_ > 0 ||
+                      across_deg_ > 0 || !mean_.empty() || !noise_model_.empty() || recipe->instrument.drift ||
+                      recipe->instrument.alignment || recipe->instrument.offset)) {
     throw UsageError("an instrument is fitted with a model; recipe '" + recipe->name +
                      "' is a table of lobes, which takes readings as they are");
   }
