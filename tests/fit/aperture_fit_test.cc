@@ -1,6 +1,7 @@
 // Fits through the discs of source and detector: gradients, recovery of what a point model misses, what is refused.
 #include <cmath>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -99,8 +100,9 @@ TEST(ApertureFit, RecoversLobesNarrowerThanTheDisc) {
     const SyntheticCase truth = OneLobe(Ndf::kEllipsoid, 1.5 * alpha, alpha, 0.5, -0.5, 20, {0.7}, {0.02});
     const Aperture aperture = Discs(0, 2);
     Measurement clean = Seen(truth, Fine(), aperture, 0, 1), noisy = Seen(truth, Fine(), aperture, 0.05, 1);
-    const Material exact = Fit(RecipeOf(truth, aperture), {}, &clean),
-                   found = Fit(RecipeOf(truth, aperture), {}, &noisy), as_point = Fit(RecipeOf(truth, {}), {}, &noisy);
+    const Material exact = CheckedFit(RecipeOf(truth, aperture), {}, &clean),
+                   found = CheckedFit(RecipeOf(truth, aperture), {}, &noisy),
+                   as_point = CheckedFit(RecipeOf(truth, {}), {}, &noisy);
     const double error = found.parameters[1].standard_error[0];
     // Without noise what is left is the error of the means.
     EXPECT_LT(std::fabs(Alpha(exact) - alpha), 0.2 * error) << alpha;
@@ -119,7 +121,8 @@ TEST(ApertureFit, BothDiscs) {
   layout.azimuths.resize(2);
   layout.detector_step = DegreesToRadians(6);
   Measurement clean = Seen(truth, layout, aperture, 0, 1), noisy = Seen(truth, layout, aperture, 0.05, 1);
-  const Material exact = Fit(RecipeOf(truth, aperture), {}, &clean), found = Fit(RecipeOf(truth, aperture), {}, &noisy);
+  const Material exact = CheckedFit(RecipeOf(truth, aperture), {}, &clean),
+                 found = CheckedFit(RecipeOf(truth, aperture), {}, &noisy);
   EXPECT_LT(std::fabs(Alpha(exact) - 0.02), 0.2 * found.parameters[1].standard_error[0]);
   EXPECT_LT(std::fabs(Alpha(found) - 0.02), 4 * found.parameters[1].standard_error[0]);
 }
@@ -129,19 +132,19 @@ TEST(ApertureFit, FileStatesTheDiscsUnlessTheRecipeDoes) {
   Measurement measurement = Seen(truth, Fine(), Discs(0, 2), 0, 1);
   measurement.instrument.detector = DegreesToRadians(2);
   Measurement again = measurement;
-  const Material stated = Fit(DefaultRecipe(truth.model, "ggx"), {}, &measurement);
+  const Material stated = CheckedFit(DefaultRecipe(truth.model, "ggx"), {}, &measurement);
   EXPECT_NEAR(stated.parameters[0].values[0], 0.05, 1e-4);
   EXPECT_EQ(stated.instrument->detector, DegreesToRadians(2));
   Recipe point = DefaultRecipe(truth.model, "ggx");
   point.instrument.detector = 0;
-  EXPECT_FALSE(Fit(point, {}, &again).instrument.has_value());
+  EXPECT_FALSE(CheckedFit(point, {}, &again).instrument.has_value());
 }
 
 TEST(ApertureFit, RefusesDiscsFarWiderThanTheGrid) {
   const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.05, 0.05, 0, 0, 0, {0.7}, {0.02});
   Measurement measurement = Seen(truth, Fine(), {}, 0, 1);
   try {
-    Fit(RecipeOf(truth, Discs(0, 25)), {}, &measurement);
+    CheckedFit(RecipeOf(truth, Discs(0, 25)), {}, &measurement);
     FAIL() << "not refused";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("times the step between neighbouring directions"));
@@ -155,7 +158,7 @@ TEST(ApertureFit, CountsDiscsThatReachTheHorizon) {
   Measurement measurement = Seen(truth, layout, {}, 0, 1);
   Recipe recipe = RecipeOf(truth, Discs(1, 4));
   recipe.theta_max = kPi / 2;
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_GT(material.set_aside.at("disc_at_horizon"), 0U);
   std::size_t all = material.samples_used;
   for (const auto& [reason, count] : material.set_aside) all += count;
@@ -168,7 +171,8 @@ TEST(ApertureFit, DoesNotDependOnThreads) {
   FitOptions many;
   many.threads = 8;
   Measurement a = Seen(truth, Fine(), Discs(0, 2), 0.05, 1), b = a;
-  const Material one = Fit(RecipeOf(truth, Discs(0, 2)), {}, &a), eight = Fit(RecipeOf(truth, Discs(0, 2)), many, &b);
+  const Material one = CheckedFit(RecipeOf(truth, Discs(0, 2)), {}, &a),
+                 eight = CheckedFit(RecipeOf(truth, Discs(0, 2)), many, &b);
   for (std::size_t i = 0; i < one.parameters.size(); ++i)
     EXPECT_EQ(one.parameters[i].values, eight.parameters[i].values);
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
@@ -43,7 +44,7 @@ TEST(FitMany, ReachesTheCostOfTheFullSearch) {
   const std::vector<SmallFit> fits = FitMany(kRecipe, SamplesOf(measurements), {});
   for (std::size_t k = 0; k < fits.size(); ++k) {
     EXPECT_TRUE(fits[k].converged) << k;
-    const Material material = Fit(kRecipe, {}, &measurements[k]);
+    const Material material = CheckedFit(kRecipe, {}, &measurements[k]);
     EXPECT_LE(fits[k].cost, material.cost * (1 + 1e-6)) << k;
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ void ExpectRecovered(const Material& material, const SyntheticCase& truth, doubl
 
 TEST(Fit, RecoversANoiseFreeMaterial) {
   Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0, 1);
-  const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+  const Material material = CheckedFit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
   EXPECT_TRUE(material.termination.converged);
   EXPECT_TRUE(material.termination.determined);
   EXPECT_TRUE(material.degenerate.empty());
@@ -39,7 +40,7 @@ TEST(Fit, RecoversANoiseFreeMaterial) {
 
 TEST(Fit, RecoversANoisyMaterialWithinItsErrors) {
   Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0.05, 1);
-  const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+  const Material material = CheckedFit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
   const SyntheticCase truth = BrushedMetal();
   for (std::size_t i = 0; i < truth.values.size(); ++i) {
     for (std::size_t c = 0; c < truth.values[i].size(); ++c) {
@@ -58,7 +59,7 @@ TEST(Fit, StandardErrorsMatchTheSpreadOverTrials) {
   std::vector<double> sum_z2(truth.values.size(), 0.0);
   for (int trial = 0; trial < kTrials; ++trial) {
     Measurement measurement = Synthetic(truth, StandardLayout(), 0.05, 100 + static_cast<std::uint64_t>(trial));
-    const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+    const Material material = CheckedFit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
     for (std::size_t i = 0; i < truth.values.size(); ++i) {
       const double z =
           (material.parameters[i].values[0] - truth.values[i][0]) / material.parameters[i].standard_error[0];
@@ -79,11 +80,12 @@ TEST(Fit, EachParameterSaysWhetherItStandsAtABound) {
   const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.3, 0.3, 0, 0, 0);
   Measurement measurement = Synthetic(truth, StandardLayout(), 0.02, 1);
   Recipe recipe = DefaultRecipe(truth.model, "bounded");
-  for (const FittedParameter& parameter : Fit(recipe, {}, &measurement).parameters) EXPECT_FALSE(parameter.at_bound);
+  for (const FittedParameter& parameter : CheckedFit(recipe, {}, &measurement).parameters)
+    EXPECT_FALSE(parameter.at_bound);
   recipe.parameters[0].start = {0.2};
   recipe.parameters[0].high = 0.25;
   recipe.parameters[5].high = 0.45;  // of F0: 0.7, 0.6, 0.5
-  const Material bounded = Fit(recipe, {}, &measurement);
+  const Material bounded = CheckedFit(recipe, {}, &measurement);
   EXPECT_NEAR(bounded.parameters[0].values[0], 0.25, 1e-9);
   EXPECT_NEAR(bounded.parameters[5].values[0], 0.45, 1e-9);
   EXPECT_TRUE(bounded.parameters[0].at_bound);
@@ -96,7 +98,7 @@ TEST(Fit, ASmallFactorIsNotAtItsBound) {
   SyntheticCase truth = OneLobe(Ndf::kGgx, 0.1, 0.1, 0, 0, 0, {2e-4}, {0.1});
   truth.model.lobes[0].fresnel = Fresnel::kNone;
   Measurement measurement = Synthetic(truth, StandardLayout(), 0.01, 1);
-  const Material material = Fit(DefaultRecipe(truth.model, "scale"), {}, &measurement);
+  const Material material = CheckedFit(DefaultRecipe(truth.model, "scale"), {}, &measurement);
   const FittedParameter& scale = material.parameters[5];
   EXPECT_FALSE(scale.at_bound);
   EXPECT_NEAR(scale.values[0], 2e-4, 4 * scale.standard_error[0]);
@@ -110,7 +112,7 @@ TEST(Fit, SameBitsOnOneAndEightThreads) {
     FitOptions options;
     options.threads = k == 0 ? 1 : 8;
     options.subsample = 500;  // so that both stages run
-    materials[k] = Fit(AutomaticRecipe(TraitsOf(measurement)), options, &measurement);
+    materials[k] = CheckedFit(AutomaticRecipe(TraitsOf(measurement)), options, &measurement);
   }
   EXPECT_EQ(materials[0].cost, materials[1].cost);
   EXPECT_EQ(materials[0].covariance, materials[1].covariance);
@@ -121,7 +123,7 @@ TEST(Fit, SameBitsOnOneAndEightThreads) {
 
 TEST(Fit, SaysThatTheAxesOfAnIsotropicMaterialHaveNoDirection) {
   Measurement measurement = Synthetic(OneLobe(Ndf::kGgx, 0.2, 0.2, 0, 0, 0), StandardLayout(), 0.05, 4);
-  const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+  const Material material = CheckedFit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
   ASSERT_EQ(material.degenerate.size(), 1U);
   EXPECT_NE(material.degenerate[0].find("theta_z: alpha_x and alpha_y agree within"), std::string::npos)
       << material.degenerate[0];
@@ -146,7 +148,7 @@ TEST(Fit, AnEllipsoidOnAnIsotropicTableIsRound) {
     }
   }
   measurement.isotropic = true;
-  const Material material = Fit(DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "ellipsoid"), {}, &measurement);
+  const Material material = CheckedFit(DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "ellipsoid"), {}, &measurement);
   EXPECT_TRUE(material.termination.converged);
   EXPECT_TRUE(material.termination.determined);
   EXPECT_NEAR(material.parameters[0].values[0], 0.15, 1e-8);
@@ -167,7 +169,7 @@ TEST(Fit, SaysWhatTheDataDoNotDetermine) {
   measurement.source = "one direction";
   Recipe recipe =
       DefaultRecipe({{Lobe{Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kSchlick}}, Diffuse::kLambert}, "ggx");
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_FALSE(material.termination.determined);
   EXPECT_FALSE(material.degenerate.empty());
   // What is named has no error; a tiny one would be believed.
@@ -197,7 +199,7 @@ TEST(Fit, EverySampleMayHaveAnIncidenceOfItsOwn) {
     for (double& value : f_r) value *= 1 + 0.05 * std::sin(12.9898 * k);
     measurement.samples.Append(wi, wo, f_r, static_cast<std::uint32_t>(k));
   }
-  const Material material = Fit(DefaultRecipe(truth.model, "ggx"), {}, &measurement);
+  const Material material = CheckedFit(DefaultRecipe(truth.model, "ggx"), {}, &measurement);
   EXPECT_TRUE(material.termination.determined);
   EXPECT_GT(GroupByIncidence(measurement).wi.size(), 4500U);
   for (const std::size_t i : {0U, 5U, 6U}) {
@@ -214,7 +216,7 @@ TEST(Fit, SaysThatNoiseAboutZeroAndZeroAreNotAMaterial) {
     for (std::vector<double>& values : measurement.samples.values) {
       for (double& value : values) value = sign *= -1;
     }
-    const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+    const Material material = CheckedFit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
     EXPECT_FALSE(material.termination.determined) << size;
     ASSERT_FALSE(material.degenerate.empty()) << size;
     EXPECT_NE(material.degenerate.back().find("noise about zero"), std::string::npos) << material.degenerate.back();
@@ -228,7 +230,7 @@ TEST(Fit, SetsAsideAndCounts) {
   Recipe recipe = AutomaticRecipe(TraitsOf(measurement));
   recipe.metric = Metric::kLog;  // which has no number for f cos_theta_i <= -1
   recipe.theta_max = DegreesToRadians(50);
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_GT(material.set_aside.at("beyond_angle_limit"), 0U);
   EXPECT_EQ(material.set_aside.at("negative"), 1U);
   EXPECT_EQ(material.samples_used + material.set_aside.at("beyond_angle_limit") + 1, before);
@@ -239,13 +241,13 @@ TEST(Fit, RefusesFewerSamplesThanParametersAndNothingLeft) {
   Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0, 1);
   Measurement few = measurement;
   few.samples = measurement.samples.Subset({0, 1, 2});
-  EXPECT_THROW(Fit(AutomaticRecipe({}), {}, &few), InputError);
+  EXPECT_THROW(CheckedFit(AutomaticRecipe({}), {}, &few), InputError);
   Recipe narrow = AutomaticRecipe({});
   narrow.theta_max = DegreesToRadians(1);
-  EXPECT_THROW(Fit(narrow, {}, &measurement), InputError);
+  EXPECT_THROW(CheckedFit(narrow, {}, &measurement), InputError);
   Recipe weighted = AutomaticRecipe({});
   weighted.weighting = Weighting::kSolidAngle;
-  EXPECT_THROW(Fit(weighted, {}, &measurement), InputError);
+  EXPECT_THROW(CheckedFit(weighted, {}, &measurement), InputError);
 }
 
 TEST(Fit, InPlaneMeasurementGetsATiltInItsPlaneOnly) {
@@ -259,7 +261,7 @@ TEST(Fit, InPlaneMeasurementGetsATiltInItsPlaneOnly) {
     const MeasurementTraits traits = TraitsOf(measurement);
     EXPECT_TRUE(traits.in_plane);
     EXPECT_NEAR(traits.plane_azimuth, DegreesToRadians(azimuth_deg), 1e-9);
-    const Material material = Fit(AutomaticRecipe(traits), {}, &measurement);
+    const Material material = CheckedFit(AutomaticRecipe(traits), {}, &measurement);
     EXPECT_EQ(material.model.lobes[0].ndf, Ndf::kGgxTilted);
     ExpectRecovered(material, truth, 1e-8);
   }
@@ -267,7 +269,7 @@ TEST(Fit, InPlaneMeasurementGetsATiltInItsPlaneOnly) {
 
 TEST(Fit, ReportsTheErrorUnderEveryMetric) {
   Measurement measurement = Synthetic(BrushedMetal(), StandardLayout(), 0.05, 1);
-  const Material material = Fit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
+  const Material material = CheckedFit(AutomaticRecipe(TraitsOf(measurement)), {}, &measurement);
   // Every one but asinh, which needs the noise.
   ASSERT_EQ(material.errors.size(), MetricChoices().size() - 1);
   for (const MetricError& error : material.errors) {
@@ -294,7 +296,7 @@ TEST(Fit, ManyChannelsKeepErrorsAndTheCovarianceOfShapes) {
   Measurement measurement = Synthetic(truth, layout, 0.03, 1);
   FitOptions options;
   options.starts = 2;
-  const Material material = Fit(DefaultRecipe(truth.model, "many"), options, &measurement);
+  const Material material = CheckedFit(DefaultRecipe(truth.model, "many"), options, &measurement);
   EXPECT_EQ(material.covariance_names, (std::vector<std::string>{"alpha_x", "alpha_y", "theta_z_deg"}));
   ASSERT_EQ(material.covariance.size(), 9U);
   EXPECT_NEAR(std::sqrt(material.covariance[0]), material.parameters[0].standard_error[0], 1e-15);

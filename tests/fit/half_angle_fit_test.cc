@@ -2,6 +2,7 @@
 // come back through every part of an instrument.
 #include <cmath>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -127,9 +128,9 @@ TEST(HalfAngleFit, IsDeterminedByANarrowLobe) {
   Measurement again = measurement;
   Recipe recipe = RecipeFor(truth);
   recipe.instrument.detector = DegreesToRadians(2);
-  const Material fixed = Fit(recipe, {}, &again);
+  const Material fixed = CheckedFit(recipe, {}, &again);
   recipe.instrument.detector_prior = DegreesToRadians(0.2);
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   ASSERT_EQ(material.instrument->half_angles.size(), 1U);
   const InstrumentHalfAngle& found = material.instrument->half_angles[0];
   EXPECT_EQ(found.name, "detector");
@@ -153,7 +154,7 @@ TEST(HalfAngleFit, IsNotDeterminedByAWideLobe) {
   Recipe recipe = RecipeFor(truth);
   recipe.instrument.detector = DegreesToRadians(2);
   recipe.instrument.detector_prior = DegreesToRadians(0.2);
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   const InstrumentHalfAngle& found = material.instrument->half_angles.at(0);
   EXPECT_FALSE(found.determined);
   EXPECT_NEAR(found.standard_error, found.prior, 0.3 * found.prior);
@@ -167,7 +168,7 @@ TEST(HalfAngleFit, IsRefusedWhereNoneIsKnown) {
   Recipe recipe = RecipeFor(truth);
   recipe.instrument.source_prior = DegreesToRadians(0.2);
   try {
-    Fit(recipe, {}, &measurement);
+    CheckedFit(recipe, {}, &measurement);
     FAIL() << "not refused";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("neither the recipe nor the file states it; give --source"));
@@ -183,10 +184,10 @@ TEST(RectangleFit, RecoversWhatADiscDoesNot) {
   Recipe recipe = RecipeFor(truth);
   // A disc of the same solid angle.
   recipe.instrument.detector = std::sqrt(4 * aperture.detector * aperture.across / kPi);
-  const Material as_disc = Fit(recipe, {}, &again);
+  const Material as_disc = CheckedFit(recipe, {}, &again);
   recipe.instrument.detector = aperture.detector;
   recipe.instrument.detector_across = aperture.across;
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_EQ(material.instrument->across, aperture.across);
   for (const std::size_t i : {0U, 1U}) {
     const double error = material.parameters[i].standard_error[0];
@@ -204,7 +205,7 @@ TEST(RectangleFit, SaysWhyItRefuses) {
     recipe.instrument.detector_across = DegreesToRadians(3);
     set(&recipe);
     try {
-      Fit(recipe, {}, &measurement);
+      CheckedFit(recipe, {}, &measurement);
     } catch (const InputError& error) {
       return error.what();
     }
@@ -236,7 +237,7 @@ TEST(ApertureFit, DiscsAtTheHorizonAreFitted) {
   }
   ASSERT_GT(low, 20U);
   const std::size_t all = measurement.samples.size();
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_EQ(material.samples_used, all - grazing);
   EXPECT_LT(Relative(material, truth), 2e-3);
 }
@@ -267,7 +268,7 @@ TEST(InstrumentFit, ValuesWithoutNoiseComeBack) {
                {"offset", offset, {}, 0.01}};
   for (const auto& c : cases) {
     Measurement measurement = ReadByModel(truth, c.recipe, Grid(8), c.angles, c.offset);
-    const Material material = Fit(c.recipe, {}, &measurement);
+    const Material material = CheckedFit(c.recipe, {}, &measurement);
     EXPECT_LT(Relative(material, truth), 1e-6) << c.name;
   }
 }
@@ -293,7 +294,7 @@ TEST(InstrumentFit, ValuesWithoutNoiseComeBackFromACrookedSampleThatWasTurned) {
   std::vector<std::vector<double>> values;
   ModelValues(problem.kernel_samples(), coordinates.ToKernel(u.data()), 0, problem.size(), &values);
   s.values = values;
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_LT(Relative(material, truth), 1e-6);
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_NEAR(material.instrument->alignment[k].value, angles[k], 1e-6 * degree) << k;
@@ -310,7 +311,7 @@ TEST(InstrumentFit, ValuesWithoutNoiseComeBackThroughGains) {
     measurement.samples.values[0][i] *= std::exp(logarithms[incidences.group[i]]);
   Recipe recipe = RecipeFor(truth);
   recipe.instrument.drift = DriftRecipe{0.05};
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_LT(Relative(material, truth), 1e-6);
   for (std::size_t k = 0; k < std::size(logarithms); ++k)
     EXPECT_NEAR(material.instrument->gains[k].gain, std::exp(logarithms[k]), 1e-6) << k;

@@ -1,6 +1,7 @@
 // Fits with gains, a crooked sample and an offset: what they recover, what their intervals hold, what is refused.
 #include <cmath>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,9 +66,9 @@ TEST(DriftFit, IntervalsOfSamplesTakenAsIndependentHoldUnderDrift) {
   for (int trial = 0; trial < kTrials; ++trial) {
     Measurement a = Measured(truth, Coarse(), noise, 100 + trial), b = a;
     Recipe recipe = Log(truth);
-    const Material without = Fit(recipe, {}, &a);
+    const Material without = CheckedFit(recipe, {}, &a);
     recipe.instrument.drift = DriftRecipe{};
-    const Material with = Fit(recipe, {}, &b);
+    const Material with = CheckedFit(recipe, {}, &b);
     const auto holds = [&](const Material& material, std::size_t i) {
       return std::fabs(Value(material, i) - truth.values[i][0]) < 1.96 * material.parameters[i].standard_error[0];
     };
@@ -94,7 +95,7 @@ TEST(DriftFit, AnEstimatedScatterTakesDegreesOfFreedomFromWhatItCarries) {
     Measurement measurement = Measured(truth, Coarse(), noise, 7);
     Recipe recipe = Log(truth);
     recipe.instrument.drift = drift;
-    return Fit(recipe, {}, &measurement);
+    return CheckedFit(recipe, {}, &measurement);
   };
   const Material estimated = fit({}), given = fit({fit({}).instrument->drift->sd});
   const auto freedom = [](const Material& material, std::size_t i) { return material.parameters[i].freedom[0]; };
@@ -113,7 +114,7 @@ TEST(DriftFit, GainsAreThoseOfTheReadings) {
   }
   Recipe recipe = Log(truth);
   recipe.instrument.drift = DriftRecipe{0.05};
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   ASSERT_EQ(material.instrument->gains.size(), 12U);
   for (const IncidenceGain& gain : material.instrument->gains)
     EXPECT_NEAR(gain.gain / (std::cos(gain.theta_i) > 0.8 ? 1.05 : 1 / 1.05), 1, 1e-3);
@@ -132,9 +133,9 @@ TEST(AlignmentFit, TiltIsHeldWithACrookedSample) {
     noise.misalignment_y = 0.2 * random.Normal() * kPi / 180;
     Measurement a = Measured(truth, Coarse({0}), noise, 300 + trial), b = a;
     Recipe recipe = Log(truth);
-    const Material without = Fit(recipe, {}, &a);
+    const Material without = CheckedFit(recipe, {}, &a);
     recipe.instrument.alignment = AlignmentRecipe();
-    const Material with = Fit(recipe, {}, &b);
+    const Material with = CheckedFit(recipe, {}, &b);
     for (const std::size_t i : {kThetaX, kThetaY}) {
       const auto holds = [&](const Material& material) {
         return std::fabs(Value(material, i) - truth.values[i][0]) < 1.96 * material.parameters[i].standard_error[0];
@@ -165,7 +166,7 @@ TEST(AlignmentFit, TurningTheSampleTellsItFromTheTilt) {
   Measurement both = Pool({first, second}, false);
   Recipe recipe = Log(truth);
   recipe.instrument.alignment = AlignmentRecipe();
-  const Material material = Fit(recipe, {}, &both);
+  const Material material = CheckedFit(recipe, {}, &both);
   ASSERT_EQ(material.instrument->alignment.size(), 3U);
   EXPECT_TRUE(*material.instrument->told_from_tilt);
   const double degree = kPi / 180;
@@ -181,7 +182,7 @@ TEST(OffsetFit, IsFoundWhereIncidencesDiffer) {
     measurement.samples.values[0][i] += 0.01 / measurement.samples.wi_z[i];
   Recipe recipe = Log(truth);
   recipe.instrument.offset = true;
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_NEAR(material.instrument->offset[0].value, 0.01, 1e-6);
   EXPECT_NEAR(Value(material, kAlphaX), 0.35, 1e-5);
 }
@@ -200,8 +201,8 @@ TEST(InstrumentFit, IsWhatTheFileStates) {
   stating.instrument.alignment = AlignmentRecipe().prior;
   both.instrument.drift = StatedDrift{};
   both.instrument.alignment = DegreesToRadians(3);
-  const Material by_recipe = Fit(asked, {}, &plain), by_file = Fit(recipe, {}, &stating),
-                 by_both = Fit(asked, {}, &both);
+  const Material by_recipe = CheckedFit(asked, {}, &plain), by_file = CheckedFit(recipe, {}, &stating),
+                 by_both = CheckedFit(asked, {}, &both);
   ASSERT_TRUE(by_file.instrument && by_file.instrument->drift);
   EXPECT_FALSE(by_file.instrument->drift->estimated);
   EXPECT_EQ(by_file.instrument->alignment.size(), by_recipe.instrument->alignment.size());
@@ -217,7 +218,7 @@ TEST(InstrumentFit, IsWhatTheFileStates) {
   straddling.instrument.noise = StatedNoise{0.002, 0.03, 0};
   recipe.metric = Metric::kCubeRoot;
   recipe.metric_given = false;
-  const Material with_noise = Fit(recipe, {}, &straddling);
+  const Material with_noise = CheckedFit(recipe, {}, &straddling);
   EXPECT_EQ(with_noise.metric, "asinh");
   EXPECT_EQ(with_noise.instrument->offset.size(), 1U);
 }
@@ -231,7 +232,7 @@ TEST(InstrumentFit, SaysWhyItRefuses) {
     Recipe recipe = Log(truth);
     set(&recipe.instrument);
     try {
-      Fit(recipe, {}, &measurement);
+      CheckedFit(recipe, {}, &measurement);
     } catch (const InputError& error) {
       return error.what();
     }

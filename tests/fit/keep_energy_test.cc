@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ Material FitOf(EnergyChoice energy, const Recipe* recipe = nullptr) {
   Measurement measurement = Synthetic(BrightTruth(), StandardLayout(), 0.02, 5);
   Recipe fitted = recipe != nullptr ? *recipe : DefaultRecipe(BrightTruth().model, "truth");
   fitted.energy = energy;
-  return Fit(fitted, {}, &measurement);
+  return CheckedFit(fitted, {}, &measurement);
 }
 
 double LargestAlbedo(const Material& material) {
@@ -83,9 +84,9 @@ TEST(KeepEnergy, ChangesNothingThatKeepsEnergyAnyway) {
   const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.2, 0.2, 0, 0, 0);
   Recipe recipe = DefaultRecipe(truth.model, "truth");
   Measurement first = Synthetic(truth, StandardLayout(), 0.02, 5), second = first;
-  const Material free = Fit(recipe, {}, &first);
+  const Material free = CheckedFit(recipe, {}, &first);
   recipe.energy = EnergyChoice::kConserving;
-  EXPECT_EQ(Fit(recipe, {}, &second).Values(), free.Values());
+  EXPECT_EQ(CheckedFit(recipe, {}, &second).Values(), free.Values());
 }
 
 TEST(KeepEnergy, RefusesWhatIsFittedApartFromTheSurface) {

@@ -9,6 +9,7 @@
 
 #include "lobefit/fit/fit.h"
 #include "lobefit/material/abg.h"
+#include "lobefit/math/directions.h"
 
 namespace lobefit {
 namespace {

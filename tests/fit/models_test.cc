@@ -1,6 +1,7 @@
 // Every choice of the model table, fitted to noise-free data of its own and found again.
 #include <cmath>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
@@ -111,7 +112,7 @@ TEST_P(EveryModel, IsFoundAgain) {
   Measurement measurement = Synthetic(truth, layout, 0, 1);
   FitOptions options;
   options.subsample = 400;
-  const Material material = Fit(DefaultRecipe(model, "test"), options, &measurement);
+  const Material material = CheckedFit(DefaultRecipe(model, "test"), options, &measurement);
   EXPECT_TRUE(material.termination.converged) << material.termination.message;
   for (std::size_t i = 0; i < truth.values.size(); ++i) {
     for (std::size_t c = 0; c < truth.values[i].size(); ++c) {
@@ -187,9 +188,9 @@ TEST(Metals, AreFixedAtTheirWavelengths) {
   truth.values[6] = {MetalIndexAt("Au", 450).index.k, MetalIndexAt("Au", 650).index.k};
   Measurement measurement = Synthetic(truth, StandardLayout(), 0, 1);
   Recipe recipe = DefaultRecipe(model, "gold");
-  EXPECT_THROW(Fit(recipe, {}, &measurement), InputError);  // no wavelengths
+  EXPECT_THROW(CheckedFit(recipe, {}, &measurement), InputError);  // no wavelengths
   recipe.wavelengths_nm = {450, 650};
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_EQ(material.parameters[5].values, truth.values[5]);
   EXPECT_EQ(material.parameters[6].values, truth.values[6]);
   EXPECT_FALSE(material.parameters[5].free);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
@@ -107,7 +108,7 @@ TEST(Reading, OfAFitHasItsError) {
   recipe.metric = Metric::kRelative;
   recipe.instrument.detector = noise.aperture;
   recipe.instrument.drift = DriftRecipe{};
-  const Material fitted = Fit(recipe, {}, &measurement);
+  const Material fitted = CheckedFit(recipe, {}, &measurement);
   const Samples& s = measurement.samples;
   std::vector<std::vector<double>> readings;
   Reading(fitted, measurement.listed_side)

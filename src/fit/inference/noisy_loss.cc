@@ -54,13 +54,17 @@ NoisyLoss::Spread NoisyLoss::Residuals(double v, double root) const {
   const std::vector<double> model(count, v), one(count, 1.0), roots(count, root);
   Spread spread;
   spread.residual.resize(count);
+  spread.slope.resize(count);
   lobefit::Residuals(transform_, model.data(), one.data(), readings.m.data(), roots.data(), count,
-                     spread.residual.data(), nullptr);
+                     spread.residual.data(), spread.slope.data());
+  double none = 0, at_model = 1;
+  lobefit::Residuals(transform_, &v, one.data(), &v, &root, 1, &none, &at_model);
+  for (double& slope : spread.slope) slope = slope == at_model ? 1 : slope / at_model;
   spread.probability = std::move(readings.probability);
   double sum = 0;
   for (std::size_t k = 0; k < count; ++k) {
     // Readings that the metric has no number for are set aside before a fit.
-    if (!Takes(transform_, readings.m[k], 1)) spread.probability[k] = spread.residual[k] = 0;
+    if (!Takes(transform_, readings.m[k], 1)) spread.probability[k] = spread.residual[k] = spread.slope[k] = 0;
     sum += spread.probability[k];
   }
   for (std::size_t k = 0; k < count; ++k) {
@@ -83,10 +87,10 @@ std::vector<MeanScore> NoisyLoss::Evaluate(const std::vector<double>& v, double 
     // Rounding must not bring the others' squares below 0.
     const double others = v.size() == 1 ? 0 : std::fmax(0.0, squares - spread.mean_square);
     for (std::size_t k = 0; k < spread.residual.size(); ++k) {
-      const double r = spread.residual[k];
+      const double r = spread.residual[k], s = spread.slope[k];
       const LossValue rho = EvaluateLoss(loss_, scale_, others + r * r);
-      means[c].score += spread.probability[k] * rho.first * r;
-      means[c].curvature += spread.probability[k] * (rho.first + 2 * rho.second * r * r);
+      means[c].score += spread.probability[k] * rho.first * r * s;
+      means[c].curvature += spread.probability[k] * (rho.first + 2 * rho.second * r * r) * s * s;
     }
   }
   return means;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
@@ -69,7 +70,7 @@ TEST(NoiseBias, IsPartOfTheErrors) {
   const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.3, 0.3, 0, 0, 0, {0.6}, {0.1});
   Measurement measurement = Noisy(truth, 0.1, 1);
   const Recipe recipe = Under(Metric::kRelative, truth);
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   ASSERT_TRUE(IsBiasRemark(material.remarks.at(0))) << material.remarks[0];
   EXPECT_NE(material.remarks[0].find("noise 10 % of the value"), std::string::npos) << material.remarks[0];
   EXPECT_FALSE(IsBiasRemark("metric log"));
@@ -104,7 +105,7 @@ TEST(NoiseBias, IsPartOfTheErrors) {
 TEST(NoiseBias, OfAMetricWithoutCurveIsNone) {
   const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.3, 0.3, 0, 0, 0, {0.6}, {0.1});
   Measurement measurement = Noisy(truth, 0.1, 1);
-  const Material material = Fit(Under(Metric::kCosineL2, truth), {}, &measurement);
+  const Material material = CheckedFit(Under(Metric::kCosineL2, truth), {}, &measurement);
   for (const std::string& remark : material.remarks) EXPECT_FALSE(IsBiasRemark(remark)) << remark;
 }
 

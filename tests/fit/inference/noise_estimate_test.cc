@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
@@ -115,7 +116,7 @@ TEST(Fit, TurnsToAsinhWhereNoiseReachesZeroAndSaysSo) {
   const Measurement noisy = Noisy({0.05, 0.01}, 3, 8, &truth);
   const Recipe recipe = DefaultRecipe({{Lobe{Ndf::kGgx}}, Diffuse::kLambert}, "test");
   Measurement measurement = noisy;
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_EQ(material.metric, "asinh");
   ASSERT_FALSE(material.remarks.empty());
   EXPECT_NE(material.remarks[0].find("of the readings are negative"), std::string::npos) << material.remarks[0];
@@ -127,14 +128,14 @@ TEST(Fit, TurnsToAsinhWhereNoiseReachesZeroAndSaysSo) {
   Recipe given = recipe;
   given.metric_given = true;
   measurement = noisy;
-  const Material kept = Fit(given, {}, &measurement);
+  const Material kept = CheckedFit(given, {}, &measurement);
   EXPECT_EQ(kept.metric, "cube-root");
   ASSERT_FALSE(kept.remarks.empty());
   EXPECT_NE(kept.remarks[0].find("is biased by the noise"), std::string::npos) << kept.remarks[0];
   // asinh by name takes its knee from the data too.
   given.metric = Metric::kAsinh;
   measurement = noisy;
-  EXPECT_EQ(Fit(given, {}, &measurement).parameters[0].values, material.parameters[0].values);
+  EXPECT_EQ(CheckedFit(given, {}, &measurement).parameters[0].values, material.parameters[0].values);
 }
 
 // A first fit that the noise has bent leaves residuals of 12 % of the value: the knee is not taken from those.
@@ -147,7 +148,7 @@ TEST(Fit, TakesTheKneeFromAFitThatTheNoiseHasNotBent) {
   std::normal_distribution<double> normal(0, 0.05);
   for (std::size_t i = 0; i < measurement.samples.size(); ++i)
     measurement.samples.values[0][i] += normal(random) / measurement.samples.wi_z[i];
-  const Material material = Fit(DefaultRecipe(metal.model, "test"), {}, &measurement);
+  const Material material = CheckedFit(DefaultRecipe(metal.model, "test"), {}, &measurement);
   EXPECT_EQ(material.metric, "asinh");
   ASSERT_FALSE(material.remarks.empty());
   EXPECT_NE(material.remarks[0].find("noise below 2 % of the value"), std::string::npos) << material.remarks[0];
@@ -160,7 +161,7 @@ TEST(Fit, KeepsTheDefaultMetricUnderNoiseProportionalToTheValue) {
   for (const double step : {8.0, 2.5}) {
     Measurement measurement = Noisy({0, 0.05}, 3, step, &truth);
     const Recipe recipe = DefaultRecipe({{Lobe{Ndf::kGgx}}, Diffuse::kLambert}, "test");
-    const Material material = Fit(recipe, {}, &measurement);
+    const Material material = CheckedFit(recipe, {}, &measurement);
     EXPECT_EQ(material.metric, "cube-root") << measurement.samples.size();
     EXPECT_TRUE(material.remarks.empty());
   }
@@ -177,7 +178,7 @@ TEST(Fit, StatedUncertaintiesDoNotBias) {
     for (const double f : truth[0]) measurement.samples.sigma.push_back(0.2 * f);
     Recipe recipe = DefaultRecipe({{Lobe{Ndf::kGgx}}, Diffuse::kLambert}, "test");
     recipe.metric = Metric::kCosineL2;
-    const Material material = Fit(recipe, {}, &measurement);
+    const Material material = CheckedFit(recipe, {}, &measurement);
     f0 += material.parameters[5].values[0] / kTrials;
     error += material.parameters[5].standard_error[0] / kTrials;
   }

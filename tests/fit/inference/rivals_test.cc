@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
@@ -32,7 +33,7 @@ TEST(Rivals, TheMirrorImageOfALobeIsNamedForSamplesInOnePlane) {
   for (const double plane_deg : {0.0, 40.0}) {
     const SyntheticCase truth = OneLobe(Ndf::kEllipsoid, 0.35, 0.11, 0, 3, plane_deg + 25);
     Measurement measurement = Synthetic(truth, InPlane(plane_deg), 0.02, 1);
-    const Material material = Fit(EllipsoidRecipe(), {}, &measurement);
+    const Material material = CheckedFit(EllipsoidRecipe(), {}, &measurement);
     EXPECT_TRUE(Names(material, "the mirror image of the solution fits as well: ")) << plane_deg;
     EXPECT_EQ(Sentences(material, "fits as well"), 1U) << "the search finds it too; it is named once";
     EXPECT_FALSE(material.termination.determined);
@@ -49,7 +50,7 @@ TEST(Rivals, ALobeThatIsItsOwnMirrorImageHasNone) {
   Measurement measurement = Synthetic(truth, InPlane(0), 0.02, 1);
   Recipe recipe = DefaultRecipe(truth.model, "tilted");
   recipe.parameters[2].fixed = {0};
-  const Material material = Fit(recipe, {}, &measurement);
+  const Material material = CheckedFit(recipe, {}, &measurement);
   EXPECT_FALSE(Names(material, "fits as well"));
   EXPECT_TRUE(material.termination.determined);
 }
@@ -59,7 +60,7 @@ class FoundMinima : public ::testing::Test {
  protected:
   FoundMinima()
       : measurement_(Synthetic(OneLobe(Ndf::kEllipsoid, 0.35, 0.11, 0, 3, 25), StandardLayout(), 0.05, 1)),
-        material_(Fit(EllipsoidRecipe(), {}, &measurement_)),
+        material_(CheckedFit(EllipsoidRecipe(), {}, &measurement_)),
         layout_(EllipsoidRecipe(), measurement_.channels.names),
         problem_(measurement_.samples, EllipsoidRecipe()),
         pool_(1) {
@@ -117,7 +118,7 @@ TEST_F(FoundMinima, OneAtTheSamePlaceIsNot) {
 TEST(Rivals, OneLobeOnBothSidesOfTheCutOfItsAnglesIsNoRival) {
   const SyntheticCase truth = OneLobe(Ndf::kEllipsoid, 0.35, 0.11, 0, 3, 90);
   Measurement measurement = Synthetic(truth, StandardLayout(), 0.05, 1);
-  Material material = Fit(EllipsoidRecipe(), {}, &measurement);
+  Material material = CheckedFit(EllipsoidRecipe(), {}, &measurement);
   const auto value = [&](std::size_t i) { return material.parameters[i].values[0]; };
   const double across = std::copysign(kPi / 2, value(4)) - value(4);  // to the cut
   ASSERT_LT(std::fabs(across), 1.9 * material.parameters[4].standard_error[0]);

@@ -1,6 +1,7 @@
 // The verdict of a fit: its numbers against the noise that was put in, its words against what is wrong with the model.
 #include "lobefit/fit/inference/verdict.h"
 
+#include "tests/support/checked_fit.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@ namespace {
 
 Verdict VerdictOf(const SyntheticCase& truth, double noise, const Model& fitted) {
   Measurement measurement = Synthetic(truth, StandardLayout(), noise, 11);
-  return *Fit(DefaultRecipe(fitted, "fitted"), {}, &measurement).verdict;
+  return *CheckedFit(DefaultRecipe(fitted, "fitted"), {}, &measurement).verdict;
 }
 
 SyntheticCase RoundTruth() { return OneLobe(Ndf::kGgx, 0.2, 0.2, 0, 0, 0); }
