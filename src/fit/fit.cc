@@ -16,6 +16,7 @@
 #include "lobefit/fit/inference/file_clusters.h"
 #include "lobefit/fit/inference/misfit.h"
 #include "lobefit/fit/inference/noise_bias.h"
+#include "lobefit/fit/inference/outlier_pull.h"
 #include "lobefit/fit/inference/rivals.h"
 #include "lobefit/fit/inference/uncertainty.h"
 #include "lobefit/fit/inference/verdict.h"
@@ -403,6 +404,12 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
       const bool chosen = recipe.metric_given || recipe.loss != Loss::kNone;
       const std::string remark = chosen ? ToBiasRemark(*bias, recipe.metric, recipe.loss) : "";
       if (!remark.empty()) remarks.push_back(remark);
+      const std::optional<OutlierPull> pull =
+          PullOfOutliers(found->problem, found->layout, found->best().u, found->uncertainty, bias->noise, &pool);
+      if (pull) {
+        std::string of_outliers = ToPullRemark(*pull, recipe.loss, recipe.loss_scale);
+        if (!of_outliers.empty()) remarks.push_back(std::move(of_outliers));
+      }
     }
   }
   const double solve_s = SecondsSince(search_time);

@@ -9,6 +9,7 @@
 #include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/inference/noise_bias.h"
+#include "lobefit/fit/inference/outlier_pull.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/math/vec.h"
@@ -167,7 +168,8 @@ Trial CompareWithTruth(const Experiment& experiment, const Truth& truth, Measure
     trial.cost = material.cost;
     trial.minima = material.minima.size();
     trial.misfit = material.misfit && material.misfit->flagged;
-    trial.biased = std::any_of(material.remarks.begin(), material.remarks.end(), IsBiasRemark);
+    trial.biased = std::any_of(material.remarks.begin(), material.remarks.end(),
+                               [](const std::string& remark) { return IsBiasRemark(remark) || IsPullRemark(remark); });
     trial.samples = measurement.samples.size();
     trial.incidences = GroupByIncidence(measurement).wi.size();
     // A fit that chose another metric, or estimated the noise that its own needs, minimised another cost; where the
