@@ -15,6 +15,7 @@ constexpr int kTablePoints = 20;        // a panel
 constexpr std::size_t kSteps = 32;      // of the table between two knots, or for each doubling of a up to kFineEnd
 constexpr double kFineEnd = 32;         // beyond, M is a power
 constexpr std::size_t kTailSteps = 24;  // for each doubling from there on
+constexpr double kPanelsEnd = 4;        // last knots from the centre
 constexpr int kDoublings = 15;          // from kFineEnd to the end of the table; beyond, the closed form
 
 // s - a atan(s / a), s, a >= 0.
@@ -92,17 +93,17 @@ void ProfileRule::AddPanels(const ProfileSpline& spline, const QuadratureRule& r
   };
   for (double s = a; s > 0 && s < 0.7 * at_radius(knots[first + 1]); s *= 2) add(first, s);
   for (std::size_t i = first; i + 1 < knots.size(); ++i) add(i, at_radius(knots[i + 1]));
-  for (const double factor : {2.0, 4.0}) add(knots.size() - 1, at_radius(factor * end_));
+  for (const double factor : {2.0, kPanelsEnd}) add(knots.size() - 1, at_radius(factor * end_));
   points_.Finish();
-  end_ *= 4;
+  end_ *= kPanelsEnd;
   const double A = 1.0 + a * a;
-  double j = 1, h = 1, sum_e = 0, sum_h = 0;
-  for (std::size_t n = 0; n < j_.size(); ++n) {
+  double j = 1, h = 1, sum_e = 0, sum_h = 0, power = 1;
+  for (std::size_t n = 0; n < j_.size(); ++n, power /= 1.0 + end_ * end_) {
     sum_e += j;
     sum_h += h;
-    j_[n] = j;
-    e_[n] = sum_e;
-    h_[n] = sum_h;
+    j_[n] = power * j;
+    e_[n] = power * sum_e;
+    h_[n] = power * sum_h;
     const auto k = static_cast<double>(n);
     j *= (k + 0.5) / (k + 1.0) * A;
     h *= (k - 0.5) / (k + 1.0) * A;
@@ -124,6 +125,12 @@ void ProfileRule::Apply(const Profile& profile, const ProfileTail& tail, bool mi
   const std::size_t K = profile.q().size();
   for (std::size_t m = 0; m < 3; ++m) std::fill_n(moments + m * stride, K + 1, 0.0);
   points_.AddMoments(profile, minus_ggx, moments, stride);
+  Complete(profile, tail, minus_ggx, moments, stride);
+}
+
+void ProfileRule::Complete(const Profile& profile, const ProfileTail& tail, bool minus_ggx, double* moments,
+                           std::size_t stride) const {
+  const std::size_t K = profile.q().size();
   const double inverse = 1.0 / (1.0 + profile.mass_excess());
   for (std::size_t m = 0; m < 3; ++m) {
     for (std::size_t k = 0; k <= K; ++k) moments[m * stride + k] *= inverse;
@@ -144,7 +151,9 @@ void ProfileRule::Apply(const Profile& profile, const ProfileTail& tail, bool mi
   }
 }
 
-ProfileTail::ProfileTail(double c) : exponent(c), gamma_ratio(GammaHalfRatio(c - 0.5, &dlog_ratio)) {}
+ProfileTail::ProfileTail(double c) : exponent(c), gamma_ratio(GammaHalfRatio(c - 0.5, &dlog_ratio)) {
+  for (std::size_t n = 0; n < inverse.size(); ++n) inverse[n] = 1.0 / (c + static_cast<double>(n) - 1.5);
+}
 
 // Beyond the circle of radius R = end_ f falls as (1 + t)^-c. For a < R: with Y = 1 + R^2, s_R = sqrt(R^2 - a^2),
 //   P2: f_R Y^(1/2) sum j_n Y^-n / (c + n - 1/2)
@@ -161,16 +170,15 @@ std::array<double, 3> ProfileRule::TailMoments(const ProfileTail& tail, double* 
     }
     return value;
   }
-  const double Y = 1.0 + end_ * end_, root = std::sqrt(Y), inverse = 1.0 / Y, c = tail.exponent;
-  double sums[3] = {0, 0, 0}, slopes[3] = {0, 0, 0}, power = 1, more = 1.0 / (c - 1.5);
-  for (std::size_t n = 0; n < j_.size(); ++n, power *= inverse) {
-    const double half = 1.0 / (c + static_cast<double>(n) - 0.5);
+  const double Y = 1.0 + end_ * end_, root = std::sqrt(Y), c = tail.exponent;
+  double sums[3] = {0, 0, 0}, slopes[3] = {0, 0, 0};
+  for (std::size_t n = 0; n < j_.size(); ++n) {
+    const double more = tail.inverse[n], half = tail.inverse[n + 1];
     const double terms[3] = {h_[n] * more, e_[n] * half, j_[n] * half};
     for (std::size_t m = 0; m < 3; ++m) {
-      sums[m] += power * terms[m];
-      slopes[m] -= power * terms[m] * (m == 0 ? more : half);
+      sums[m] += terms[m];
+      slopes[m] -= terms[m] * (m == 0 ? more : half);
     }
-    more = half;
   }
   const double rest = 1.0 / (c - 1.0);
   const double factor[3] = {0.5 * Y * root * rest, 0.5 * a_ * root * rest, root};
@@ -194,7 +202,13 @@ void ProfileRule::AddTail(const Profile& profile, const ProfileTail& tail, bool 
   }
 }
 
-ProfileGrid::ProfileGrid(std::shared_ptr<const ProfileSpline> spline) : spline_(std::move(spline)) {
+double ProfileRule::EndOfPoints(const ProfileSpline& spline) {
+  const double radius = kPanelsEnd * spline.knots().back();
+  return std::log1p(radius * radius);
+}
+
+ProfileGrid::ProfileGrid(std::shared_ptr<const ProfileSpline> spline)
+    : spline_(std::move(spline)), matrix_(*spline_, ProfileRule::EndOfPoints(*spline_)) {
   const auto add = [&](double from, double to, std::size_t steps) {
     const double x0 = std::asinh(from), x1 = std::asinh(to), step = (x1 - x0) / static_cast<double>(steps);
     breaks_.push_back({x0, 1.0 / step, a_.size(), steps});
@@ -215,6 +229,9 @@ ProfileGrid::ProfileGrid(std::shared_ptr<const ProfileSpline> spline) : spline_(
   const QuadratureRule rule = GaussLegendre(kTablePoints);
   rules_.reserve(a_.size());
   for (const double a : a_) rules_.emplace_back(*spline_, a, rule);
+  below_ = static_cast<std::size_t>(std::lower_bound(a_.begin(), a_.end(), knots.back()) - a_.begin());
+  for (std::size_t i = 0; i < below_; ++i) matrix_.Add(rules_[i].points());
+  matrix_.Finish();
   stride_ = (spline_->size() + 4) / 4 * 4;
   zero_ = Table(Profile(spline_, std::vector<double>(spline_->size(), 0.0)));
 }
@@ -222,8 +239,16 @@ ProfileGrid::ProfileGrid(std::shared_ptr<const ProfileSpline> spline) : spline_(
 std::vector<double> ProfileGrid::Table(const Profile& profile) const {
   std::vector<double> table(a_.size() * 3 * stride_, 0.0);
   const ProfileTail tail(profile.tail_exponent());
-  for (std::size_t i = 0; i < a_.size(); ++i)
-    rules_[i].Apply(profile, tail, true, table.data() + i * 3 * stride_, stride_);
+  const bool resolved = matrix_.Resolves(profile);
+  if (resolved) matrix_.Moments(profile, stride_, table.data());
+  for (std::size_t i = 0; i < a_.size(); ++i) {
+    double* moments = table.data() + i * 3 * stride_;
+    if (resolved || i >= below_) {
+      rules_[i].Complete(profile, tail, true, moments, stride_);
+    } else {
+      rules_[i].Apply(profile, tail, true, moments, stride_);
+    }
+  }
   return table;
 }
 

@@ -13,6 +13,7 @@
 #include <memory>
 #include <vector>
 
+#include "lobefit/core/radial/moment_matrix.h"
 #include "lobefit/core/radial/profile.h"
 #include "lobefit/core/radial/profile_moments.h"
 #include "lobefit/core/radial/profile_table.h"
@@ -23,7 +24,9 @@ namespace lobefit {
 // What a tail (1 + t)^-c of exponent c > 3/2 is at every a.
 struct ProfileTail {
   explicit ProfileTail(double c);
+  static constexpr std::size_t kTerms = 20;
   double exponent, dlog_ratio, gamma_ratio;  // Gamma(c) / Gamma(c - 1/2) and the derivative of its logarithm
+  std::array<double, kTerms + 1> inverse;    // 1 / (c + n - 3/2)
 };
 
 // M, T and P2 at one a >= 0 for any coefficients of a spline: Gauss-Legendre between the circles of the knots, series
@@ -38,6 +41,13 @@ class ProfileRule {
   // `minus_ggx`: the values less those of GGX. `tail`: the profile's.
   void Apply(const Profile& profile, const ProfileTail& tail, bool minus_ggx, double* moments,
              std::size_t stride) const;
+  // What Apply does after the sums over the points, for sums that come from elsewhere.
+  void Complete(const Profile& profile, const ProfileTail& tail, bool minus_ggx, double* moments,
+                std::size_t stride) const;
+
+  const ProfilePoints& points() const { return points_; }
+  // u beyond all points, the same for every a below the last knot.
+  static double EndOfPoints(const ProfileSpline& spline);
 
  private:
   void AddPanels(const ProfileSpline& spline, const QuadratureRule& rule, int parts);
@@ -49,12 +59,12 @@ class ProfileRule {
 
   double a_, end_;  // the panels' last radius
   ProfilePoints points_;
-  std::array<double, 20> j_{}, e_{}, h_{};  // the tail's series
-  double u_ = 0, f_ggx_ = 0;                // at end_
-  std::vector<double> basis_;               // there
-  double log_shift_ = 0;                    // a beyond end_: f at a instead
-  std::array<double, 2> edge_{};            // (1 + end_^2) times s - a atan(s / a) and atan(s / a)
-  std::array<double, 3> ggx_{};             // GGX's tail
+  std::array<double, ProfileTail::kTerms> j_{}, e_{}, h_{};  // the tail's series, times (1 + end_^2)^-n
+  double u_ = 0, f_ggx_ = 0;                                 // at end_
+  std::vector<double> basis_;                                // there
+  double log_shift_ = 0;                                     // a beyond end_: f at a instead
+  std::array<double, 2> edge_{};                             // (1 + end_^2) times s - a atan(s / a) and atan(s / a)
+  std::array<double, 3> ggx_{};                              // GGX's tail
 };
 
 // Nodes of a table for any coefficients of a spline; immutable, some milliseconds to make.
@@ -73,10 +83,12 @@ class ProfileGrid {
   std::size_t stride_;        // numbers of a row of a table
   std::vector<double> zero_;  // the table of coefficients 0, where fits begin
   std::vector<ProfileRule> rules_;
+  std::size_t below_;    // nodes below the last knot, of which the matrix has rows
+  MomentMatrix matrix_;  // of profiles that it resolves
 };
 
 // The table of one profile: quintic Hermite interpolation of M, M' = -T, M'' = P2 and of their derivatives by q.
-// Immutable after construction (about a millisecond); one serves all samples of an iteration. Absolute error of sigma /
+// Immutable after construction (a tenth of a millisecond); one serves all samples of an iteration. Absolute error of sigma /
 // sqrt(q) below 1e-12, of its derivatives 1e-10.
 class ProfileMasking {
  public:

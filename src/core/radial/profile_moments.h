@@ -23,6 +23,15 @@ class ProfilePoints {
   // e^E x^j for the derivatives.
   void AddMoments(const Profile& profile, bool minus_ggx, double* moments, std::size_t stride) const;
 
+  // each(interval, x, weights): of every point, x = u less the interval's left end.
+  template <class Each>
+  void ForEach(const Each& each) const {
+    for (const Piece& piece : pieces_) {
+      for (std::size_t i = piece.begin; i < piece.end; ++i)
+        each(piece.interval, x_[i], std::array<double, 3>{weights_[0][i], weights_[1][i], weights_[2][i]});
+    }
+  }
+
  private:
   struct Piece {
     std::size_t interval, begin, end;

@@ -150,33 +150,46 @@ void MultiplyArrays(const double* a, const double* b, std::size_t n, double* to)
   for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) hn::StoreU(hn::Mul(Load(a + i), Load(b + i)), D64(), to + i);
 }
 
+// Adds the products of kA arrays from column i on with kB from column j on to the upper triangle of `gram`, packed row
+// by row. A sum waits four cycles for its last product, so that many are summed at a time; each adds in the
+// order of its samples, however many there are.
+template <std::size_t kA, std::size_t kB>
+HWY_INLINE void AddGramTile(const double* columns, std::size_t i, std::size_t j, std::size_t count, std::size_t n,
+                            std::size_t stride, double* gram) {
+  const D64 d;
+  const double *a = columns + i * stride, *b = columns + j * stride;
+  V64 sums[kA][kB];
+  for (std::size_t p = 0; p < kA; ++p) {
+    for (std::size_t q = 0; q < kB; ++q) sums[p][q] = hn::Zero(d);
+  }
+  for (std::size_t k = 0; k < n; k += hn::Lanes(d)) {
+    V64 y[kB];
+    for (std::size_t q = 0; q < kB; ++q) y[q] = Load(b + q * stride + k);
+    for (std::size_t p = 0; p < kA; ++p) {
+      const V64 x = Load(a + p * stride + k);
+      for (std::size_t q = 0; q < kB; ++q) sums[p][q] = hn::MulAdd(x, y[q], sums[p][q]);
+    }
+  }
+  for (std::size_t p = 0; p < kA; ++p) {
+    double* row = gram + (i + p) * count - (i + p) * (i + p + 1) / 2;
+    for (std::size_t q = 0; q < kB; ++q) {
+      if (j + q >= i + p) row[j + q] += hn::GetLane(hn::SumOfLanes(d, sums[p][q]));
+    }
+  }
+}
+
 // Adds the upper triangle of the Gram matrix of `columns` arrays to `gram`, row by row.
 void GramArrays(const double* columns, std::size_t count, std::size_t n, std::size_t stride, double* gram) {
-  const D64 d;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double* a = columns + i * stride;
+  // As many sums as there are registers for.
+  constexpr std::size_t kRows = HWY_MAX_BYTES >= 64 ? 4 : 2, kColumns = 4;
+  std::size_t i = 0;
+  for (; i + kRows <= count; i += kRows) {
     std::size_t j = i;
-    for (; j + 4 <= count; j += 4) {
-      const double* b = columns + j * stride;
-      V64 s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0;
-      for (std::size_t k = 0; k < n; k += hn::Lanes(d)) {
-        const V64 x = Load(a + k);
-        s0 = hn::MulAdd(x, Load(b + k), s0);
-        s1 = hn::MulAdd(x, Load(b + stride + k), s1);
-        s2 = hn::MulAdd(x, Load(b + 2 * stride + k), s2);
-        s3 = hn::MulAdd(x, Load(b + 3 * stride + k), s3);
-      }
-      *gram++ += hn::GetLane(hn::SumOfLanes(d, s0));
-      *gram++ += hn::GetLane(hn::SumOfLanes(d, s1));
-      *gram++ += hn::GetLane(hn::SumOfLanes(d, s2));
-      *gram++ += hn::GetLane(hn::SumOfLanes(d, s3));
-    }
-    for (; j < count; ++j) {
-      const double* b = columns + j * stride;
-      V64 s0 = hn::Zero(d);
-      for (std::size_t k = 0; k < n; k += hn::Lanes(d)) s0 = hn::MulAdd(Load(a + k), Load(b + k), s0);
-      *gram++ += hn::GetLane(hn::SumOfLanes(d, s0));
-    }
+    for (; j + kColumns <= count; j += kColumns) AddGramTile<kRows, kColumns>(columns, i, j, count, n, stride, gram);
+    for (; j < count; ++j) AddGramTile<kRows, 1>(columns, i, j, count, n, stride, gram);
+  }
+  for (; i < count; ++i) {
+    for (std::size_t j = i; j < count; ++j) AddGramTile<1, 1>(columns, i, j, count, n, stride, gram);
   }
 }
 
