@@ -105,6 +105,9 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   recipe = WithKnots(recipe, samples, measurement->channels.names, options, &pool);
   const Incidences incidences = GroupByIncidence(*measurement);
   std::vector<std::string> remarks = measurement->remarks;
+  if (recipe.noise.IsKnown() && recipe.metric != Metric::kAsinh)
+    remarks.push_back(std::string("the noise that is stated weighs nothing under metric ") + RowOf(recipe.metric).name +
+                      "; metric asinh takes it");
   const auto search_time = std::chrono::steady_clock::now();
   // Tables with cells of known size are computed from readings; rows of a goniometer are readings.
   const bool readings = samples.solid_angle.empty() && spread.size() == 0;

@@ -1,5 +1,6 @@
 #include "lobefit/fit/inference/noise_estimate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -136,6 +137,23 @@ TEST(Fit, TurnsToAsinhWhereNoiseReachesZeroAndSaysSo) {
   given.metric = Metric::kAsinh;
   measurement = noisy;
   EXPECT_EQ(CheckedFit(given, {}, &measurement).parameters[0].values, material.parameters[0].values);
+}
+
+TEST(Fit, SaysThatAnotherMetricDoesNotTakeTheNoise) {
+  const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.3, 0.3, 0, 0, 0, {0.6}, {0.1});
+  Recipe recipe = DefaultRecipe(truth.model, "test");
+  recipe.noise = {0.002, 0.05};
+  const auto says = [&] {
+    Measurement measurement = Synthetic(truth, StandardLayout(), 0.05, 1);
+    const Material material = CheckedFit(recipe, {}, &measurement);
+    return std::any_of(material.remarks.begin(), material.remarks.end(), [](const std::string& remark) {
+      return remark.find("weighs nothing under metric log") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(says()) << "asinh is then chosen";
+  recipe.metric = Metric::kLog;
+  recipe.metric_given = true;
+  EXPECT_TRUE(says());
 }
 
 // A first fit that the noise has bent leaves residuals of 12 % of the value: the knee is not taken from those.
