@@ -46,8 +46,14 @@ struct Rung {
   std::vector<ParameterValues> shapes;  // [lobe] its ellipse on the subsample
   // What else was found there, by name, but for coefficients of profiles.
   std::map<std::string, std::vector<double>> others;
-  bool above_one = false;       // the first lobe's reflectance is at its bound
-  bool creates_energy = false;  // CreatesEnergy
+  struct Radial {
+    SlopeCoordinates shape;
+    std::shared_ptr<const ProfileGrid> grid;  // null: no profile
+    std::vector<double> q;
+  };
+  std::vector<Radial> profiles;  // [lobe]
+  bool above_one = false;        // the first lobe's reflectance is at its bound
+  bool creates_energy = false;   // CreatesEnergy
   double mean() const {
     return std::accumulate(mean_square.begin(), mean_square.end(), 0.0) / static_cast<double>(mean_square.size());
   }
@@ -90,6 +96,29 @@ void StartAt(const std::vector<ParameterValues>& shapes, Recipe* recipe) {
       const Parameter& parameter = parameters[first + i];
       if (!parameter.free) continue;
       recipe->parameters[first + i].start = {std::clamp(shapes[l][i][0], parameter.low, parameter.high)};
+    }
+  }
+}
+
+// Profiles as starts, on the knots that they were judged with and those further out that all samples reach; where the
+// local exponent is no other than theirs.
+void StartProfilesAt(const std::vector<Rung::Radial>& found, const Samples& samples, Recipe* recipe) {
+  std::vector<std::shared_ptr<const ProfileGrid>> grids;
+  for (std::size_t l = 0; l < found.size(); ++l) {
+    grids.push_back(found[l].grid);
+    if (grids[l] == nullptr) continue;
+    const std::vector<double>& known = grids[l]->spline()->knots();
+    const std::vector<double> knots = ProfileKnots(LargestRadius(recipe->model.lobes[l], found[l].shape, samples));
+    if (knots.size() > known.size() && std::equal(known.begin(), known.end(), knots.begin()))
+      grids[l] = GridWithKnots(knots);
+  }
+  *recipe = WithGrids(*recipe, grids);
+  const std::vector<Parameter> parameters = Parameters(recipe->model);
+  for (std::size_t l = 0; l < found.size(); ++l) {
+    const std::vector<double>& q = found[l].q;
+    for (std::size_t k = 0; grids[l] != nullptr && k < grids[l]->spline()->size(); ++k) {
+      const std::size_t i = FirstParameter(recipe->model, l) + kEllipseParameters + k;
+      recipe->parameters[i].start = {std::clamp(k < q.size() ? q[k] : q.back(), parameters[i].low, parameters[i].high)};
     }
   }
 }
@@ -167,7 +196,8 @@ class Ladder {
     return scaled_ && name.ends_with("-scaled") ? name.substr(0, name.size() - 7) : name;
   }
 
-  LadderChoice Choose() {
+  // `samples`: all of them, to which the choice is fitted.
+  LadderChoice Choose(const Samples& samples) {
     const Rung& best = Best();
     std::size_t chosen = rungs_.size();
     for (std::size_t r = 0; r < rungs_.size(); ++r) {
@@ -199,6 +229,7 @@ class Ladder {
     if (choice.warm) {
       StartAt(rung.shapes, &choice.recipe);
       StartOthersAt(rung.others, all_channels_, &choice.recipe);
+      StartProfilesAt(rung.profiles, samples, &choice.recipe);
     }
     choice.recipe.reason = fmt::format(
         "of {} models the simplest whose error on held-out incident directions ({:.3g}) is within one standard error "
@@ -241,6 +272,15 @@ class Ladder {
       const std::vector<Parameter> parameters = Parameters(recipe.model);
       for (std::size_t i = 0; i < parameters.size(); ++i) {
         if (parameters[i].group != ParameterGroup::kShape) rung.others[parameters[i].json_name] = values[i];
+      }
+      const KernelModel kernel = layout.ToKernel(minima[0].solution.u.data());
+      for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
+        rung.profiles.push_back({kernel.lobes[l].shape.slope, nullptr, {}});
+        if (FamilyOf(recipe.model.lobes[l].ndf) != Family::kProfile) continue;
+        rung.profiles[l].grid = GridOf(recipe.model.lobes[l]);
+        for (std::size_t i = FirstParameter(recipe.model, l) + kEllipseParameters; i < FirstFresnel(recipe.model, l);
+             ++i)
+          rung.profiles[l].q.push_back(values[i][0]);
       }
       for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
         if (!HasExponent(recipe.model.lobes[l].ndf)) continue;
@@ -413,7 +453,7 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
         ladder.Try(coated, NameOfParts(coated), &ladder.Best());
     }
   }
-  return ladder.Choose();
+  return ladder.Choose(measurement->samples);
 }
 
 void AddAdvice(Material* material) {

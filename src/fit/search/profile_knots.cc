@@ -35,7 +35,8 @@ Ndf GgxOf(Ndf ndf) {
   return IsTilted(ndf) ? Ndf::kEllipsoid : Ndf::kGgxAnisotropic;
 }
 
-// Largest distance of a sample's half vector from the mean slope, in the metric of the ellipse.
+}  // namespace
+
 double LargestRadius(const Lobe& lobe, const SlopeCoordinates& shape, const Samples& samples) {
   const double a = std::exp(shape.v[2]), c = std::exp(shape.v[4]);
   double largest = 0;
@@ -48,7 +49,13 @@ double LargestRadius(const Lobe& lobe, const SlopeCoordinates& shape, const Samp
   return largest;
 }
 
-}  // namespace
+Recipe WithGrids(const Recipe& recipe, const std::vector<std::shared_ptr<const ProfileGrid>>& grids) {
+  Model model = recipe.model;
+  for (std::size_t l = 0; l < grids.size(); ++l) {
+    if (grids[l] != nullptr) model.lobes[l].grid = grids[l];
+  }
+  return WithModel(recipe, model);
+}
 
 std::vector<double> ProfileKnots(double r_max) {
   std::vector<double> knots = r_max < 8 ? std::vector<double>{0, 0.25, 0.5, 0.75, 1, 1.5} : std::vector<double>{0, 1};
@@ -71,17 +78,16 @@ Recipe WithKnots(const Recipe& recipe, const Samples& samples, const std::vector
   if (minima.empty()) return recipe;
   const KernelModel kernel = layout.ToKernel(minima[0].solution.u.data());
   const ParameterValues values = layout.Report(minima[0].solution.u.data());
-  Model model = recipe.model;
-  for (std::size_t l = 0; l < model.lobes.size(); ++l) {
-    if (NeedsKnots(model.lobes[l])) {
-      const double r_max = LargestRadius(model.lobes[l], kernel.lobes[l].shape.slope, samples);
-      model.lobes[l].grid = GridWithKnots(ProfileKnots(r_max));
-    }
+  std::vector<std::shared_ptr<const ProfileGrid>> grids(recipe.model.lobes.size());
+  for (std::size_t l = 0; l < grids.size(); ++l) {
+    const Lobe& lobe = recipe.model.lobes[l];
+    if (NeedsKnots(lobe))
+      grids[l] = GridWithKnots(ProfileKnots(LargestRadius(lobe, kernel.lobes[l].shape.slope, samples)));
   }
-  Recipe resolved = WithModel(recipe, model);
-  for (std::size_t l = 0; l < model.lobes.size(); ++l) {
-    if (!NeedsKnots(recipe.model.lobes[l])) continue;
-    const std::size_t from = FirstParameter(ggx, l), to = FirstParameter(model, l);
+  Recipe resolved = WithGrids(recipe, grids);
+  for (std::size_t l = 0; l < grids.size(); ++l) {
+    if (grids[l] == nullptr) continue;
+    const std::size_t from = FirstParameter(ggx, l), to = FirstParameter(resolved.model, l);
     for (std::size_t i = 0; i < kEllipseParameters; ++i) {
       ParameterRecipe& entry = resolved.parameters[to + i];
       if (entry.fixed.empty() && entry.start.empty()) entry.start = values[from + i];
