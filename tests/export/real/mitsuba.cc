@@ -1,9 +1,11 @@
 // Mitsuba 3's own parser and plugins on an exported file:
-//   mitsuba VARIANT SCENE.xml < rows
+//   mitsuba VARIANT SCENE.xml TURN < rows
 // VARIANT: scalar_rgb or scalar_spectral. The first shape of the scene has the BSDF. Each row begins with theta_i,
-// phi_i, theta_o, phi_o in degrees. Prints its f_r as linear sRGB, under D65 in the spectral variant, one line a row.
+// phi_i, theta_o, phi_o in degrees. TURN: of the shape's texture coordinates about the normal, in
+// degrees. Prints its f_r as linear sRGB, under D65 in the spectral variant, one line a row.
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <sstream>
 #include <string>
@@ -61,7 +63,7 @@ Color<float, 3> Evaluate(const BSDF<Float, Spectrum>* bsdf, SurfaceInteraction<F
 }
 
 template <typename Float, typename Spectrum>
-void Run(Object* object) {
+void Run(Object* object, double turn_deg) {
   auto* scene = dynamic_cast<Scene<Float, Spectrum>*>(object);
   if (scene == nullptr || scene->shapes().empty()) Throw("the scene has no shape");
   const BSDF<Float, Spectrum>* bsdf = scene->shapes()[0]->bsdf();
@@ -74,10 +76,10 @@ void Run(Object* object) {
     at.uv = {0.5f, 0.5f};
     at.n = {0, 0, 1};
     at.sh_frame = Frame<Float>(at.n);
-    at.sh_frame.s = at.dp_du = {1, 0, 0};
-    at.sh_frame.t = at.dp_dv = {0, 1, 0};
-    at.wi = Direction(theta_o, phi_o);
-    const Color<float, 3> rgb = Evaluate<Float, Spectrum>(bsdf, &at, Direction(theta_i, phi_i));
+    at.sh_frame.s = at.dp_du = Direction(90, turn_deg);
+    at.sh_frame.t = at.dp_dv = Direction(90, turn_deg + 90);
+    at.wi = at.to_local(Direction(theta_o, phi_o));
+    const Color<float, 3> rgb = Evaluate<Float, Spectrum>(bsdf, &at, at.to_local(Direction(theta_i, phi_i)));
     std::printf("%.9g %.9g %.9g\n", rgb[0], rgb[1], rgb[2]);
   }
 }
@@ -87,7 +89,7 @@ void Start() {
   Scene<Float, Spectrum>::static_accel_initialization();
 }
 
-int Main(const std::string& variant, const std::string& path) {
+int Main(const std::string& variant, const std::string& path, double turn_deg) {
   Jit::static_initialization();
   Thread::static_initialization();
   Logger::static_initialization();
@@ -104,16 +106,16 @@ int Main(const std::string& variant, const std::string& path) {
   parser::ParserState state = parser::parse_file(config, path);
   parser::transform_all(config, state);
   const std::vector<ref<Object>> objects = parser::instantiate(config, state);
-  MI_INVOKE_VARIANT(variant, Run, const_cast<Object*>(objects[0].get()));
+  MI_INVOKE_VARIANT(variant, Run, const_cast<Object*>(objects[0].get()), turn_deg);
   return 0;
 }
 
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 3) return 2;
+  if (count != 4) return 2;
   try {
-    return Main(arguments[1], arguments[2]);
+    return Main(arguments[1], arguments[2], std::atof(arguments[3]));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

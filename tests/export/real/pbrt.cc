@@ -1,11 +1,12 @@
 // pbrt-v4's own parser and materials on an exported file:
-//   pbrt SCENE < rows
+//   pbrt SCENE TURN < rows
 // SCENE is what stands after WorldBegin: `Include "NAME.pbrt"` or a Material of a measured file; file names count from
 // the current folder, as they do from a main scene there. Each row begins with theta_i, phi_i, theta_o, phi_o in
-// degrees. Prints the f_r of pbrt's BSDF as linear sRGB under D65, one line a row. A mixture, of which pbrt chooses one
+// degrees. TURN: of the mesh's texture coordinates about the normal, in degrees. Prints the f_r of pbrt's BSDF as linear sRGB under D65, one line a row. A mixture, of which pbrt chooses one
 // material at random, is the sum of its parts by their shares.
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <map>
 #include <sstream>
@@ -79,7 +80,8 @@ pbrt::Vector3f Direction(double theta_deg, double phi_deg) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 2) return 2;
+  if (count != 3) return 2;
+  const pbrt::Vector3f along = Direction(90, std::atof(arguments[2])), across(-along.y, along.x, 0);
   pbrt::PBRTOptions options;
   options.quiet = true;
   options.nThreads = 1;
@@ -106,16 +108,16 @@ int main(int count, char** arguments) {
       pbrt::SampledSpectrum value(0.f);
       for (const auto& [material, share] : parts) {
         const pbrt::Point3fi origin(pbrt::Point3f(0, 0, 0));
-        pbrt::SurfaceInteraction surface(origin, pbrt::Point2f(0.5f, 0.5f), wo, pbrt::Vector3f(1, 0, 0),
-                                         pbrt::Vector3f(0, 1, 0), pbrt::Normal3f(0, 0, 0), pbrt::Normal3f(0, 0, 0), 0,
-                                         false);
+        pbrt::SurfaceInteraction surface(origin, pbrt::Point2f(0.5f, 0.5f), wo, along, across, pbrt::Normal3f(0, 0, 0),
+                                         pbrt::Normal3f(0, 0, 0), 0, false);
         surface.material = material;
         pbrt::RayDifferential ray(pbrt::Point3f(wo), -wo);
         ray.hasDifferentials = true;
         ray.rxOrigin = ray.ryOrigin = ray.o;
         ray.rxDirection = ray.ryDirection = ray.d;
         const pbrt::BSDF bsdf = surface.GetBSDF(ray, lambda, camera, memory, sampler);
-        value += static_cast<float>(share) * bsdf.f(wo, wi);
+        // Its integrators multiply by the cosine to the shading normal.
+        value += static_cast<float>(share) * bsdf.f(wo, wi) * AbsDot(wi, surface.shading.n) / wi.z;
         memory.Reset();
       }
       const pbrt::SampledSpectrum light = srgb.illuminant.Sample(lambda);

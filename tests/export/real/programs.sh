@@ -24,18 +24,28 @@ build_radiance() {
   gcc $flags "$1/src/cv/checkBSDF.c" -o "$bin/checkBSDF" "$bin/lib.a" -lm
 }
 
-# compiled PROGRAM NAME: the path of our driver NAME.cc in the program's build folder, compiled where it is older.
+# compile_NAME FOLDER: our driver NAME.cc as build/lobefit-NAME of that folder, where it is older. LDFLAGS are added.
 compile_pbrt() {
   local build=$1/build
   [ "$build/lobefit-pbrt" -nt "$here/pbrt.cc" ] && return
   eval "${CXX:-g++} $(flags_of "$build" src/pbrt/materials.cpp)" '"$here/pbrt.cc"' -o '"$build/lobefit-pbrt"' \
     '-Wl,--start-group "$build/libpbrt_lib.a" $(find "$build/src" -name "lib*.a" ! -name "libOpenGL*") -Wl,--end-group' \
-    -lOpenEXR -lIex -lIlmThread -lImath -lz -lGL -lX11 -ldl -lpthread
+    -lOpenEXR -lIex -lIlmThread -lImath -lz -lGL -lX11 -ldl -lpthread ${LDFLAGS:-}
+}
+
+# Its loader alone, which needs Qt's headers.
+compile_brdf_explorer() {
+  local sources=$1/src/brdf
+  [ "$sources/lobefit-brdf-explorer" -nt "$here/brdf_explorer.cc" ] && return
+  (cd "$sources" && ${CXX:-g++} -O1 -w -fPIC -DPTEX_STATIC -I. $(pkg-config --cflags Qt5Widgets Qt5OpenGL) \
+    "$here/brdf_explorer.cc" BRDFBase.cpp BRDFAnalytic.cpp BRDFImageSlice.cpp BRDFMeasuredAniso.cpp BRDFMeasuredMERL.cpp \
+    DGLShader.cpp Paths.cpp SharedContextGLWidget.cpp glerror.cpp -o lobefit-brdf-explorer \
+    $(pkg-config --libs Qt5Widgets Qt5OpenGL) ${LDFLAGS:-})
 }
 
 compile_mitsuba() {
   local build=$1/build
   [ "$build/lobefit-mitsuba" -nt "$here/mitsuba.cc" ] && return
   eval "${CXX:-g++} $(flags_of "$build" src/mitsuba/mitsuba.cpp)" '"$here/mitsuba.cc"' -o '"$build/lobefit-mitsuba"' \
-    '-L"$build"' '-Wl,-rpath,"$build"' -lmitsuba '$(find "$build" -maxdepth 1 -name "libnanothread.so")' -ldl -lpthread
+    '-L"$build"' '-Wl,-rpath,"$build"' -lmitsuba '$(find "$build" -maxdepth 1 -name "libnanothread.so")' -ldl -lpthread ${LDFLAGS:-}
 }
