@@ -341,6 +341,30 @@ TEST_F(TargetModel, Gltf) {
       5e-3, 0.1, n);
 }
 
+// What a viewer is known to lack is said of files that need it, and of no others.
+TEST_F(TargetModel, GltfNamesWhatViewersLack) {
+  const auto notes = [&](const SyntheticCase& synthetic) {
+    ExportOptions options;
+    options.targets = {&FindTarget("gltf")};
+    options.folder = folder_;
+    options.name = "sample";
+    options.numbers = Numbers::kCopied;
+    std::string all;
+    const ExportOutcome outcome = ExportMaterial(test::MaterialOf(synthetic), options);
+    for (const std::string& note : outcome.results[0].notes) all += note;
+    return all;
+  };
+  SyntheticCase plain = test::Plastic(), tinted = test::Plastic(), coated = test::Plastic();
+  plain.values[5] = {0.04, 0.04, 0.04};
+  tinted.values[5] = {0.04, 0.03, 0.02};
+  coated.model.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered});
+  coated.values.insert(coated.values.begin() + 6, {{0.1}, {0.1}, {0}, {0}, {0}, {1.5, 1.5, 1.5}, {0, 0, 0}});
+  EXPECT_EQ(notes(plain), "");
+  EXPECT_NE(notes(tinted).find("KHR_materials_specular"), std::string::npos);
+  EXPECT_NE(notes(coated).find("clear coat"), std::string::npos);
+  EXPECT_NE(notes(test::Turned()).find("KHR_materials_anisotropy"), std::string::npos);
+}
+
 // [KHR_materials_clearcoat]: mix(base, coat, w F), F Schlick's of 0.04 at the viewer's cosine to the surface.
 TEST_F(TargetModel, GltfCoat) {
   SyntheticCase coated;

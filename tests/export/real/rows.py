@@ -1,4 +1,5 @@
-"""Pairs of directions to 88 degrees, a third uniform over the solid angle, the others in the material's lobes:
+"""Pairs of directions to 88 degrees, in the proportions by which `lobefit export` takes its errors: three uniform over
+the solid angle for one in each lobe of the material.
 
     rows.py MATERIAL.material.json > OUT.csv
 """
@@ -9,7 +10,7 @@ import sys
 
 import lobes
 
-ROWS = 4500
+ROWS = 4000  # of a material with one lobe
 LEAST = math.cos(math.radians(88))
 
 
@@ -31,13 +32,14 @@ def angles(w):
 def main(path):
     rng, shapes = random.Random(1), lobes.of_material(path)
     print("theta_i,phi_i,theta_o,phi_o,R,G,B")
-    for k in range(ROWS):
+    parts = 3 + len(shapes)
+    for k in range(ROWS // 4 * parts):
         while True:
             wi = uniform(rng)
-            if k % 3 == 0 or not shapes:
+            if k % parts < 3:
                 wo = uniform(rng)
                 break
-            shape = shapes[k // 3 % len(shapes)]
+            shape = shapes[k % parts - 3]
             wo = reflected(wi, lobes.normal(shape, 0.9 * rng.random(), 2 * math.pi * rng.random()))
             if wo[2] >= LEAST:
                 break
