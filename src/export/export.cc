@@ -132,10 +132,17 @@ std::optional<FittedBrdf> ChooseNumbers(const Target& target, const Subject& sub
   return std::nullopt;
 }
 
-// What was refitted is not carried unchanged; what was left out or converted before says so.
-void CompleteRows(const Subject& subject, bool refitted, std::vector<Carried>* rows) {
+// What was refitted is not carried unchanged, and may have fewer lobes and no coat; what was left out or converted
+// before says so.
+void CompleteRows(const Subject& subject, const std::vector<Carried>* refitted, std::vector<Carried>* rows) {
+  for (const Feature feature : {Feature::kSecondLobe, Feature::kCoat}) {
+    if (refitted == nullptr) break;
+    const bool has =
+        std::any_of(refitted->begin(), refitted->end(), [&](const Carried& r) { return r.feature == feature; });
+    if (!has) Mark(rows, feature, Carries::kNot, "what was fitted has none");
+  }
   for (Carried& row : *rows) {
-    if (refitted && row.how == Carries::kExactly && row.feature != Feature::kChannels) {
+    if (refitted != nullptr && row.how == Carries::kExactly && row.feature != Feature::kChannels) {
       row = {row.feature, Carries::kApproximately, "refitted"};
     }
   }
@@ -158,7 +165,8 @@ ExportResult ExportTo(const Target& target, const Subject& subject, const Export
   if (target.evaluate != nullptr) refitted = ChooseNumbers(target, subject, options, &result);
   const FittedBrdf& fit = refitted ? *refitted : subject.fit;
   result.carries = target.carries(subject.fit);
-  CompleteRows(subject, refitted.has_value(), &result.carries);
+  const std::vector<Carried> of_refitted = refitted ? target.carries(*refitted) : std::vector<Carried>();
+  CompleteRows(subject, refitted ? &of_refitted : nullptr, &result.carries);
   WrittenFiles written =
       target.write(fit, {options.folder, options.name, Header(subject.fit.material(), options, result, remarks),
                          options.map_path, options.old_mitsuba});

@@ -75,7 +75,7 @@ class SurfaceEvaluator {
     const SurfaceLobe& coat = surface_.lobes[surface_.coat_lobe];
     const double cos_o = Dot(coat.normal, wo);
     const bool by_albedo = surface_.coating == Surface::Coating::kAlbedo;
-    const double dims = by_albedo ? LayerAlbedo(surface_.coat_lobe, cos_o) : coat.weight * coat.fresnel(0, cos_o);
+    const double dims = coat.weight * (by_albedo ? LayerAlbedo(surface_.coat_lobe, cos_o) : coat.fresnel(0, cos_o));
     for (std::size_t c = 0; c < surface_.diffuse.size(); ++c) values[c] *= 1 - dims;
     AddLobe(surface_.coat_lobe, wi, wo, by_albedo ? cos_d : cos_o, values);
   }

@@ -146,6 +146,45 @@ TEST(Refit, IsNearerWhereTheMaskingDiffers) {
 }
 
 // The fit against itself, and against itself with a tenth more.
+// The rows are of the file that was written: a coat that only the copied numbers have is not in the refitted ones.
+TEST(Refit, SaysThatItsFileHasNoCoat) {
+  SyntheticCase coated;
+  coated.model.lobes = {{Ndf::kGgx}, {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered}};
+  coated.values = {{0.4},     {0.4},          {0}, {0}, {0}, {0.05, 0.05, 0.05},
+                   {0.1},     {0.1},          {0}, {0}, {0}, {1.5, 1.5, 1.5},
+                   {0, 0, 0}, {0.3, 0.2, 0.1}};
+  ExportOptions options;
+  options.folder = std::filesystem::path(testing::TempDir()) / "refit_without_coat";
+  options.name = "sample";
+  for (const Numbers numbers : {Numbers::kCopied, Numbers::kRefitted}) {
+    options.targets = {&FindTarget("openpbr"), &FindTarget("gltf")};
+    options.numbers = numbers;
+    for (const ExportResult& result : ExportMaterial(test::MaterialOf(coated), options).results) {
+      for (const Carried& row : result.carries) {
+        if (row.feature != Feature::kCoat && row.feature != Feature::kSecondLobe) continue;
+        EXPECT_EQ(row.how, numbers == Numbers::kCopied ? Carries::kApproximately : Carries::kNot)
+            << result.target->name;
+      }
+    }
+  }
+  std::filesystem::remove_all(options.folder);
+}
+
+// Radiance takes a tensor tree's cells as they are: cells of 4 degrees leave little of a lobe of 3 degrees' width, which
+// interpolation between them would hide.
+TEST(ErrorMeter, TakesATensorTreeWithoutInterpolation) {
+  SyntheticCase narrow = test::Plastic();
+  narrow.values[0] = narrow.values[1] = {0.045};
+  ExportOptions options;
+  options.targets = {&FindTarget("bsdf-xml")};
+  options.folder = std::filesystem::path(testing::TempDir()) / "tensor_tree_error";
+  options.name = "sample";
+  const ExportResult result = ExportMaterial(test::MaterialOf(narrow), options).results[0];
+  EXPECT_GT(result.error.lobe.median, 0.45);
+  EXPECT_LT(result.error.lobe.median, 0.65);
+  std::filesystem::remove_all(options.folder);
+}
+
 TEST(ErrorMeter, SaysWhatIsThere) {
   const FittedBrdf fit(test::MaterialOf(test::Tilted()));
   const ErrorMeter meter(fit);

@@ -60,8 +60,16 @@ TEST(OpenPbrInputs, CountOrAreErrors) {
   EXPECT_NEAR(tinted[0] / white[0], 0.2, 0.03);
   // Of no effect, since the layer has no weight.
   EXPECT_EQ(ValuesOf(Import(OpenPbr(Input("coat_roughness", "float", "0.4"))))[0], plain);
+  // With one it makes the lobe below rougher, and darkens.
+  const std::string coat = Input("coat_weight", "float", "1");
+  const double coated = ValuesOf(Import(OpenPbr(coat + Input("coat_darkening", "float", "0"))))[0];
+  EXPECT_NE(coated, plain);
+  EXPECT_LT(ValuesOf(Import(OpenPbr(coat)))[0], coated);
+  EXPECT_NEAR(ValuesOf(Import(OpenPbr(coat + Input("coat_color", "color3", "0.5, 0.5, 0.5"))))[0] /
+                  ValuesOf(Import(OpenPbr(coat)))[0],
+              0.5, 0.3);
+  EXPECT_THAT(ErrorOf(OpenPbr(Input("coat_weight", "float", "2"))), HasSubstr("its coat has the weight 2"));
   for (const auto& [name, value] : std::vector<std::pair<const char*, const char*>>{{"specular_weight", "0.3"},
-                                                                                    {"coat_weight", "1"},
                                                                                     {"fuzz_weight", "1"},
                                                                                     {"thin_film_weight", "0.5"},
                                                                                     {"geometry_opacity", "0.5"}}) {

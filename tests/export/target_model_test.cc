@@ -190,6 +190,61 @@ TEST_F(TargetModel, MaterialXCoat) {
       3e-3, 0.1);
 }
 
+// The same as the coat of an OpenPBR surface, over a metal and over a dielectric: it makes the lobe below rougher and the
+// dielectric's index count relative to its own, which the numbers undo. Darkening is off.
+TEST_F(TargetModel, OpenPbrCoat) {
+  const double ior = 1.6, alpha = 0.3, coat_alpha = 0.1, f0 = std::pow((ior - 1) / (ior + 1), 2);
+  const std::vector<double> tau = {0, 0.1, 0.3}, rho = {0.3, 0.2, 0.1};
+  for (const std::vector<double>& base : {std::vector<double>{0.9, 0.6, 0.4}, std::vector<double>{0.08, 0.05, 0.02}}) {
+    SyntheticCase coated;
+    coated.model.lobes = {{Ndf::kGgx}, {Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered}};
+    coated.values = {{alpha}, {alpha},         {0}, {0}, {0}, base, {coat_alpha}, {coat_alpha}, {0}, {0},
+                     {0},     {ior, ior, ior}, tau, rho};
+    const std::string text = Export(coated, "openpbr", "sample.openpbr.mtlx");
+    const auto value = [&](const std::string& name) {
+      return Find(text, "name=\"" + name + "\" type=\"[a-z0-9]*\" value=\"([^\"]*)\"");
+    };
+    EXPECT_EQ(value("coat_weight")[0], 1);
+    EXPECT_EQ(value("coat_darkening")[0], 0);
+    EXPECT_NEAR(value("coat_ior")[0], ior, 1e-6);
+    EXPECT_NEAR(std::pow(value("coat_roughness")[0], 2), coat_alpha, 1e-6);
+    const double roughness = value("specular_roughness")[0];
+    const double below_alpha = std::sqrt(std::pow(roughness, 4) + 2 * std::pow(value("coat_roughness")[0], 4));
+    EXPECT_NEAR(below_alpha, alpha, 1e-6);
+    const double metalness = value("base_metalness")[0], index = value("specular_ior")[0] / value("coat_ior")[0];
+    const std::vector<double> color = value("base_color"), tint = value("specular_color");
+    ExpectSame(
+        [&](const Vec3& wi, const Vec3& wo) {
+          const double c = Dot(wi, Normalized(wi + wo));
+          const auto frame = TurnedFrame(0, {0, 0, 1});
+          const double e = LobeAlbedo(below_alpha, wo.z), coat_e = LobeAlbedo(coat_alpha, wo.z);
+          const double lost = (1 - e) / e, coat_lost = (1 - coat_e) / coat_e;
+          const double F = FresnelDielectric(c, ior);
+          const double coat = LobeFactor(frame, coat_alpha, coat_alpha, wi, wo, "mean") * F * (1 + F * coat_lost);
+          const double left = 1 - LobeAlbedo(coat_alpha, wo.z, f0) * (1 + coat_lost * FresnelDielectric(wo.z, ior));
+          const double lobe = LobeFactor(frame, below_alpha, below_alpha, wi, wo, "mean");
+          const double d = FresnelDielectric(c, index), d0 = FresnelDielectric(1, index);
+          const double passes = 1 - LobeAlbedo(below_alpha, wo.z, d0) * (1 + lost * FresnelDielectric(wo.z, index));
+          Rgb3 f = {};
+          for (std::size_t j = 0; j < 3; ++j) {
+            const double m = SchlickFresnel(color[j], c);
+            const double below = metalness * lobe * m * (1 + m * lost) +
+                                 (1 - metalness) * (lobe * d * (1 + d * lost) * tint[j] + passes * color[j] / kPi);
+            f[j] = coat + left * below;
+          }
+          return f;
+        },
+        3e-3, 0.1);
+    const BrdfFunction imported = ImportMaterial(path_).brdf;
+    double peak[3];
+    imported({0, 0, 1}, {0, 0, 1}, peak);
+    const double kept = (1 - f0) * std::exp(-2 * tau[0]) * (1 - LobeAlbedo(coat_alpha, 1, f0));
+    EXPECT_NEAR(peak[0], f0 / (4 * kPi * coat_alpha * coat_alpha) + kept * base[0] / (4 * kPi * alpha * alpha) + 0.1,
+                0.06 * peak[0])
+        << "what lies below has the fit's reflectance and width";
+  }
+}
+
 // An edge tint over a rough diffuse part.
 SyntheticCase Tinted() {
   SyntheticCase synthetic = test::Turned();
@@ -284,6 +339,30 @@ TEST_F(TargetModel, Gltf) {
       },
       // The normal map's 8 bits: 0.01 degrees, which count near the tilted horizon.
       5e-3, 0.1, n);
+}
+
+// What a viewer is known to lack is said of files that need it, and of no others.
+TEST_F(TargetModel, GltfNamesWhatViewersLack) {
+  const auto notes = [&](const SyntheticCase& synthetic) {
+    ExportOptions options;
+    options.targets = {&FindTarget("gltf")};
+    options.folder = folder_;
+    options.name = "sample";
+    options.numbers = Numbers::kCopied;
+    std::string all;
+    const ExportOutcome outcome = ExportMaterial(test::MaterialOf(synthetic), options);
+    for (const std::string& note : outcome.results[0].notes) all += note;
+    return all;
+  };
+  SyntheticCase plain = test::Plastic(), tinted = test::Plastic(), coated = test::Plastic();
+  plain.values[5] = {0.04, 0.04, 0.04};
+  tinted.values[5] = {0.04, 0.03, 0.02};
+  coated.model.lobes.push_back({Ndf::kGgx, Masking::kSmithSeparable, Fresnel::kCoatLayered});
+  coated.values.insert(coated.values.begin() + 6, {{0.1}, {0.1}, {0}, {0}, {0}, {1.5, 1.5, 1.5}, {0, 0, 0}});
+  EXPECT_EQ(notes(plain), "");
+  EXPECT_NE(notes(tinted).find("KHR_materials_specular"), std::string::npos);
+  EXPECT_NE(notes(coated).find("clear coat"), std::string::npos);
+  EXPECT_NE(notes(test::Turned()).find("KHR_materials_anisotropy"), std::string::npos);
 }
 
 // [KHR_materials_clearcoat]: mix(base, coat, w F), F Schlick's of 0.04 at the viewer's cosine to the surface.

@@ -11,6 +11,7 @@
 
 #include "lobefit/io/bsdf_xml/angle_basis.h"
 #include "lobefit/io/bsdf_xml/blocks.h"
+#include "lobefit/io/bsdf_xml/lookup.h"
 #include "lobefit/io/bsdf_xml/radiance_color.h"
 #include "lobefit/io/bsdf_xml/tensor_tree.h"
 #include "lobefit/io/text/place.h"
@@ -164,20 +165,6 @@ Measurement ReadMatrices(const XmlFile& xml, pugi::xml_node definition, const Xm
   Measurement measurement = builder.Finish();
   measurement.conventions["basis"] = incident_basis.name + " x " + exit_basis.name + " (header)";
   return measurement;
-}
-
-TensorTree ReadTree(const XmlFile& xml, const XmlBlock& block, int rank) {
-  const pugi::xml_node basis = xml.OnlyChild(block.element, "AngleBasis");
-  if (ToLower(xml.Text(basis)) != "lbnl/shirley-chiu") {
-    xml.Fail(basis,
-             "the AngleBasis of a tensor tree is '" + Excerpt(xml.Text(basis)) + "'; known is LBNL/Shirley-Chiu");
-  }
-  const pugi::xml_node element = xml.OnlyChild(block.element, "ScatteringData");
-  const std::string_view text = xml.Text(element);
-  if (text.empty()) xml.Fail(element, "<ScatteringData> is empty; a tensor tree in braces belongs here");
-  return TensorTree(text, rank, [&](std::string_view place, const std::string& message) {
-    FailAtLine(xml.file(), xml.Line(place), message);
-  });
 }
 
 // Projected incident solid angle of a cell along the first axis of an isotropic tree, sin(theta_i) = 1 - 2 u; the part

@@ -7,6 +7,7 @@
 
 #include "lobefit/base/text/text.h"
 #include "lobefit/io/bsdf_xml/angle_basis.h"
+#include "lobefit/io/bsdf_xml/lookup.h"
 #include "lobefit/io/bsdf_xml/tensor_tree.h"
 
 namespace lobefit {
@@ -254,6 +255,37 @@ TEST(BsdfXml, TreeOfRankFourLiesOnTwoDisks) {
   ExpectAngles(m.samples.wo(2), 30, -45);
   ExpectAngles(m.samples.wi(8), 30, 135);
   for (const double measure : m.samples.solid_angle) EXPECT_NEAR(measure, 1, 1e-14);  // all cells are alike
+}
+
+// Looking directions up gives the value of their cell, over the whole of it, in either rank: what a reading has at the
+// centre of the cell.
+TEST(BsdfXml, LookUpGivesTheCellWithoutInterpolation) {
+  const std::string four = File("TensorTree4", Data("Visible", "Reflection Back", kTree, "{ " + Counting(16) + "}"));
+  const std::string three = File(
+      "TensorTree3",
+      Data("Visible", "Reflection Back", kTree, "{ {0} {100} {2} {100} {4} {100} { 10 11 12 13 14 15 16 17 } {100} }"));
+  for (const std::string* bytes : {&four, &three}) {
+    const Measurement read = ReadBytes(ReadBsdfXml, *bytes);
+    const TreeLookup table = LookUpTensorTrees({"a.xml", *bytes});
+    ASSERT_EQ(table.channels.size(), 1U);
+    for (std::size_t k = 0; k < read.samples.size(); ++k) {
+      double value = -1;
+      table.brdf(read.samples.wi(k), read.samples.wo(k), &value);
+      EXPECT_EQ(value, read.samples.values[0][k]) << k;
+    }
+  }
+  // Both are 30 degrees at the cells' centres: half the way to the next centre is the same cell still.
+  const TreeLookup table = LookUpTensorTrees({"a.xml", four});
+  double value = -1;
+  table.brdf(FromSpherical(DegreesToRadians(50), DegreesToRadians(20)), FromSpherical(DegreesToRadians(10), -0.1),
+             &value);
+  EXPECT_EQ(value, 2);
+  // An isotropic tree turns with the light.
+  const TreeLookup round = LookUpTensorTrees({"a.xml", three});
+  double turned = -1;
+  round.brdf(FromSpherical(0.9, 0.3), FromSpherical(0.5, 1.4), &value);
+  round.brdf(FromSpherical(0.9, 2.3), FromSpherical(0.5, 3.4), &turned);
+  EXPECT_EQ(value, turned);
 }
 
 TEST(BsdfXml, TreeOfRankThreeIsIsotropicAndUsesHalfOfItsFirstAxis) {

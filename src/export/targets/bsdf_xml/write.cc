@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "lobefit/base/files/file.h"
 #include "lobefit/export/targets/features.h"
+#include "lobefit/io/bsdf_xml/lookup.h"
 #include "lobefit/io/bsdf_xml/writer.h"
-#include "lobefit/io/read.h"
-#include "lobefit/measurement/interpolation.h"
 
 namespace lobefit {
 namespace {
@@ -23,14 +23,14 @@ WrittenFiles WriteBsdfXml(const FittedBrdf& fit, const WriteContext& context) {
   TensorTreeOptions options;
   options.isotropic = fit.IsIsotropic();
   WriteTensorTree(fit.function(), fit.channels(), options, path);
-  const Measurement back = ReadMeasurement(path);
-  const BrdfFunction table = Interpolate(back);
-  if (back.channels.size() == fit.material().channels.size()) return {{path}, table, false, {}};
-  // Grey in R, G and B became one block.
+  const FileBytes bytes(path);
+  const TreeLookup table = LookUpTensorTrees({path, bytes.bytes()});
   const std::size_t channels = fit.material().channels.size();
+  if (table.channels.size() == channels) return {{path}, table.brdf, false, {}};
+  // Grey in R, G and B became one block.
   return {{path},
-          [table, channels](const Vec3& wi, const Vec3& wo, double* values) {
-            table(wi, wo, values);
+          [brdf = table.brdf, channels](const Vec3& wi, const Vec3& wo, double* values) {
+            brdf(wi, wo, values);
             std::fill_n(values + 1, channels - 1, values[0]);
           },
           false,

@@ -30,6 +30,26 @@ std::vector<Carried> CarriesGltf(const FittedBrdf& fit) {
 Model OneLobeModel(const FittedBrdf& fit) { return OwnModel(fit, Masking::kSmithHeight, 1); }
 BrdfFunction EvaluateGltf(const FittedBrdf& fit) { return InChannelsOf(fit, SurfaceBrdf(GltfSurface(GltfOf(fit)))); }
 
+// What viewers are known to lack.
+std::vector<std::string> Notes(const GltfMaterial& material) {
+  std::vector<std::string> notes;
+  if (material.roughness.anisotropy > 0) {
+    notes.emplace_back(
+        "a viewer without KHR_materials_anisotropy (Blender before 4.0) takes the narrow width for both: the highlight "
+        "is then too small and too bright");
+  }
+  if (material.specular_color != Color3{1, 1, 1}) {
+    notes.emplace_back(
+        "a viewer that takes no colour from KHR_materials_specular (Blender before 4.0) shows the highlight grey");
+  }
+  if (material.clearcoat > 0) {
+    notes.emplace_back(
+        "Blender before 4.0 shows a clear coat as a lobe of another shape and strength: a dimmer highlight, a wider "
+        "glow");
+  }
+  return notes;
+}
+
 WrittenFiles WriteGltf(const FittedBrdf& fit, const WriteContext& context) {
   const GltfMaterial material = GltfOf(fit);
   Json gltf;
@@ -78,12 +98,7 @@ WrittenFiles WriteGltf(const FittedBrdf& fit, const WriteContext& context) {
   const FileBytes bytes(path);
   const ImportedMaterial back = ReadGltf({path, bytes.bytes()});
   WrittenFiles written = {{path}, InChannelsOf(fit, back.brdf), false, {}};
-  if (material.roughness.anisotropy > 0) {
-    written.notes.emplace_back(
-        "a viewer without KHR_materials_anisotropy (Blender before 4.0) takes the narrow width for both: the highlight "
-        "is "
-        "then too small and too bright");
-  }
+  written.notes = Notes(material);
   return written;
 }
 

@@ -73,7 +73,7 @@ const std::map<std::string, std::vector<MaterialXInput>>& MaterialXInputs() {
         {"fuzz_weight", "0"},
         {"fuzz_color"},
         {"fuzz_roughness"},
-        {"coat_weight", "0"},
+        {"coat_weight"},
         {"coat_color"},
         {"coat_roughness"},
         {"coat_roughness_anisotropy"},

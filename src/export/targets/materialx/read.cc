@@ -282,6 +282,23 @@ class MaterialXReader {
     surface->lobes.push_back(lobe);
   }
 
+  OpenPbrCoat ReadCoat(pugi::xml_node node) const {
+    OpenPbrCoat coat;
+    coat.weight = Real(node, "coat_weight", coat.weight);
+    coat.color = Color(node, "coat_color", coat.color);
+    coat.roughness = {Real(node, "coat_roughness", 0), Real(node, "coat_roughness_anisotropy", 0)};
+    coat.ior = Real(node, "coat_ior", coat.ior);
+    coat.darkening = Real(node, "coat_darkening", coat.darkening);
+    if (!(coat.weight >= 0 && coat.weight <= 1 && coat.ior >= 1)) {
+      xml_.Fail(node,
+                fmt::format("its coat has the weight {:g} and the index {:g}; 0 to 1 and at least 1 are understood",
+                            coat.weight, coat.ior));
+    }
+    coat.normal = Normalized(VectorInput(node, "geometry_coat_normal", {0, 0, 1}));
+    coat.rotation = RotationOf(VectorInput(node, "geometry_coat_tangent", {1, 0, 0}), coat.normal);
+    return coat;
+  }
+
   OpenPbr ReadOpenPbr(pugi::xml_node node) const {
     OpenPbr parameters;
     parameters.base_color = Color(node, "base_color", parameters.base_color);
@@ -293,6 +310,7 @@ class MaterialXReader {
     parameters.roughness = {Real(node, "specular_roughness", 0.3), Real(node, "specular_roughness_anisotropy", 0)};
     parameters.normal = Normalized(VectorInput(node, "geometry_normal", {0, 0, 1}));
     parameters.rotation = RotationOf(VectorInput(node, "geometry_tangent", {1, 0, 0}), parameters.normal);
+    parameters.coat = ReadCoat(node);
     return parameters;
   }
 

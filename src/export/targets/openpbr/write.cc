@@ -17,11 +17,19 @@ namespace {
 
 std::vector<Carried> CarriesOpenPbr(const FittedBrdf& fit) {
   const OpenPbr written = OpenPbrOf(fit);
-  const double root = (written.ior - 1) / (written.ior + 1);
+  const bool coated = written.coat.weight > 0;
+  const Surface surface = OpenPbrSurface(written);
   Spectrum f0;
-  for (const double base : written.base_color)
-    f0.push_back(written.metalness * base + (1 - written.metalness) * root * root);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double dielectric = surface.lobes[1].fresnel(c, 1) * written.specular_color[c];
+    f0.push_back(written.metalness * written.base_color[c] + (1 - written.metalness) * dielectric);
+  }
   std::vector<Carried> rows = CarriesMetalBase(fit, CarriesLobes(fit, Masking::kImplicit, kMaterialXMasking), f0);
+  if (coated) {
+    Mark(&rows, Feature::kCoat, Carries::kApproximately,
+         "by the coat, which dims what lies below for the viewer's direction only, and refracts nothing");
+    if (fit.lobes().size() == 2) Mark(&rows, Feature::kSecondLobe, Carries::kApproximately, "the coat");
+  }
   if (written.metalness == 1 && AllHave(fit, Fresnel::kSchlickF82)) {
     const Spectrum tint = LobeOf(fit, StrongestLobe(fit), 1).fresnel.f82;
     const bool held = std::all_of(tint.begin(), tint.end(), [](double t) { return t <= 1; });
@@ -40,22 +48,31 @@ BrdfFunction EvaluateOpenPbr(const FittedBrdf& fit) {
   return InChannelsOf(fit, SurfaceBrdf(OpenPbrSurface(OpenPbrOf(fit))));
 }
 
+std::string Real(const char* input, double value) {
+  return fmt::format("    <input name=\"{}\" type=\"float\" value=\"{}\"/>\n", input, Number9(value));
+}
+
+// About the surface's own normal, which is the default.
+std::string CoatText(const OpenPbrCoat& coat) {
+  if (coat.weight == 0) return "";
+  return Real("coat_weight", coat.weight) + Real("coat_roughness", coat.roughness.roughness) +
+         Real("coat_ior", coat.ior) + Real("coat_darkening", coat.darkening);
+}
+
 WrittenFiles WriteOpenPbr(const FittedBrdf& fit, const WriteContext& context) {
   const OpenPbr parameters = OpenPbrOf(fit);
   const std::string id = Identifier(context.name);
   const FrameText frame = FrameNodes(id, parameters.rotation, parameters.normal);
-  const auto real = [](const char* input, double value) {
-    return fmt::format("    <input name=\"{}\" type=\"float\" value=\"{}\"/>\n", input, Number9(value));
-  };
   const std::string nodes =
       MeshFrame() + frame.nodes + fmt::format("  <open_pbr_surface name=\"{}_surface\" type=\"surfaceshader\">\n", id) +
       fmt::format("    <input name=\"base_color\" type=\"color3\" value=\"{}\"/>\n",
                   Numbers9(parameters.base_color, ", ")) +
-      real("base_metalness", parameters.metalness) + real("base_diffuse_roughness", parameters.diffuse_roughness) +
+      Real("base_metalness", parameters.metalness) + Real("base_diffuse_roughness", parameters.diffuse_roughness) +
       fmt::format("    <input name=\"specular_color\" type=\"color3\" value=\"{}\"/>\n",
                   Numbers9(parameters.specular_color, ", ")) +
-      real("specular_roughness", parameters.roughness.roughness) +
-      real("specular_roughness_anisotropy", parameters.roughness.anisotropy) + real("specular_ior", parameters.ior) +
+      Real("specular_roughness", parameters.roughness.roughness) +
+      Real("specular_roughness_anisotropy", parameters.roughness.anisotropy) + Real("specular_ior", parameters.ior) +
+      CoatText(parameters.coat) +
       fmt::format(
           "    <input name=\"geometry_normal\" type=\"vector3\" nodename=\"{}\"/>\n"
           "    <input name=\"geometry_tangent\" type=\"vector3\" nodename=\"{}\"/>\n  </open_pbr_surface>\n",
