@@ -6,6 +6,7 @@
 #include "options/measurement_options.h"
 #include "options/report_formats.h"
 #include "tasks/stack_report.h"
+#include "text/output.h"
 #include "verbs/verb.h"
 #include <fmt/format.h>
 
@@ -65,7 +66,7 @@ int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   ReportOptions options;
   options.threads = common.Threads();
   options.scale = verb.scale;
-  fmt::print("{}", WriteReports(formats, material, measurement, PictureOf(verb), options));
+  Print(WriteReports(formats, material, measurement, PictureOf(verb), options));
   return kExitDone;
 }
 
