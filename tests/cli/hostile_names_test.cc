@@ -46,7 +46,7 @@ TEST_P(HostileNames, AreTextEverywhere) {
   if (std::system("command -v python3 >/dev/null 2>&1") != 0) GTEST_SKIP() << "python3 is not installed";
   const ProgramResult parsed = Shell("$SOURCE/tests/cli/parse_strictly.py .");
   EXPECT_EQ(parsed.exit_code, 0) << parsed.out << parsed.err;
-  EXPECT_THAT(parsed.out, testing::HasSubstr("16 files"));
+  EXPECT_THAT(parsed.out, testing::HasSubstr("17 files"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, HostileNames,
