@@ -53,16 +53,21 @@ class Subjects {
   }
 
   const Subject& For(const Target& target) const {
-    if (target.rgb_only && rgb_) return *rgb_;
+    if (NeedsRgb(target) && rgb_) return *rgb_;
     return std::string_view(target.name) == "json" ? whole_ : *determined_;
   }
   std::string Refusal(const Target& target) const {
-    if (target.rgb_only && !whole_.fit.IsRgbOrGrey() && !rgb_) return no_rgb_;
+    if (NeedsRgb(target) && !rgb_) return no_rgb_;
     return target.refusal == nullptr ? "" : target.refusal(For(target).fit);
   }
   const Subject& whole() const { return whole_; }
 
  private:
+  bool NeedsRgb(const Target& target) const {
+    if (whole_.fit.IsRgbOrGrey()) return false;
+    return target.rgb_only || (target.by_wavelength && whole_.fit.channels().wavelengths_nm.empty());
+  }
+
   // The error is that against the fit's own R, G, B.
   void MakeRgb(const ChannelMap& map) {
     const FittedBrdf& fit = whole_.fit;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "lobefit/base/error.h"
@@ -260,11 +262,22 @@ bool Means(std::string_view piece, const Channels& channels, std::size_t index) 
   return wanted && std::fabs(*wanted - nm) < 0.5;
 }
 
+// A piece of a list as it is compared with the others: "R" is "r", "550nm" is "550".
+std::string PlainPiece(std::string_view piece) {
+  std::string plain = ToLower(piece);
+  if (plain.ends_with("nm") && ParseDouble(Trim(std::string_view(plain).substr(0, plain.size() - 2))))
+    plain = std::string(Trim(std::string_view(plain).substr(0, plain.size() - 2)));
+  return plain;
+}
+
+// Ranges may overlap; a piece that stands there twice is a slip of whoever wrote the list.
 ChannelMap FromList(const std::string& choice, const Channels& channels) {
   ChannelMap map = {{}, {}, "chosen: " + choice};
   std::vector<bool> taken(channels.size(), false);
+  std::set<std::string> pieces;
   for (const std::string_view part : Split(choice, ',')) {
     const std::string_view piece = Trim(part);
+    if (!pieces.insert(PlainPiece(piece)).second) Refuse(choice, channels, "'" + Excerpt(piece) + "' is named twice");
     bool found = false;
     for (std::size_t i = 0; i < channels.size(); ++i) {
       if (!Means(piece, channels, i)) continue;

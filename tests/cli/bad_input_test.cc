@@ -94,5 +94,18 @@ TEST_F(BadInput, AHugeClaimInASmallFileTakesNoMemory) {
   }
 }
 
+// A wavelength of its own in each of 20 000 rows: a table of rows times wavelengths took 1.6 GB before it was refused.
+TEST_F(BadInput, WavelengthsThatAllDifferTakeNoMemory) {
+  std::string rows = "theta_i,phi_i,theta_o,phi_o,wavelength,f\n";
+  for (int i = 0; i < 20000; ++i) {
+    rows += "20,0," + std::to_string(0.004 * (i % 19999)) + "," + std::to_string(i % 360) + "," +
+            std::to_string(400 + 0.02 * i + 1e-4 * (i % 7)) + ",0.3\n";
+  }
+  WriteWholeFile(folder_ / "jitter.csv", rows);
+  const ProgramResult result = Shell("ulimit -v 1000000; lobefit info jitter.csv");
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_THAT(result.err, testing::HasSubstr("20000 different wavelengths at 19999 pairs of directions; at most 4096"));
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -66,6 +66,10 @@ TEST_F(ReportVerb, DrawsTwoSamplesButNoMaps) {
                  "theta_i,phi_i,theta_o,phi_o,R,G,B\n10,0,20,180,0.5,0.4,0.3\n10,0,25,180,0.5,0.4,0.3\n");
   EXPECT_EQ(Shell("lobefit report fitted.material.json two.csv --format png,html --out two.png").exit_code, 0);
   EXPECT_THAT(Files(), testing::IsSupersetOf({"two.png", "two.html"}));
+  // The name says the format.
+  EXPECT_EQ(Shell("lobefit report fitted.material.json two.csv --out alone.html").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "alone.html"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "alone.png"));
   const ProgramResult maps = Shell("lobefit report fitted.material.json two.csv --format exr --out two.png");
   EXPECT_EQ(maps.exit_code, 3);
   EXPECT_THAT(maps.err, HasSubstr("fills no map"));

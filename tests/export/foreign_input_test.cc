@@ -128,6 +128,12 @@ TEST(MaterialXInputs, CountOrAreErrors) {
               HasSubstr("too large"));
 }
 
+TEST(MaterialXInputs, NormalsPointOutOfTheSurface) {
+  const std::string tangent = "<tangent name=\"t\" type=\"vector3\"/>";
+  const std::string flat = Conductor("<input name=\"normal\" type=\"vector3\" nodename=\"t\"/>", tangent);
+  EXPECT_THAT(ErrorOf(flat), HasSubstr("its normal does not point out of the surface"));
+}
+
 // A colour of another space, and a value that is not the one used.
 TEST(MaterialXInputs, ColoursAreLinearAndConstant) {
   const std::string linear = "<input name=\"ior\" type=\"color3\" value=\"0.2, 0.2, 0.2\" colorspace=\"lin_rec709\"/>";

@@ -89,6 +89,19 @@ TEST_F(ExportVerb, RefusalsDoNotStopTheOthers) {
   EXPECT_EQ(record["refused"][0]["target"], "merl");
 }
 
+// Two of three channels are no colour: what takes colours or spectra refuses them.
+TEST_F(ExportVerb, ChannelsWithoutColourAreRefused) {
+  ASSERT_EQ(Shell("lobefit fit $SOURCE/samples/satin_plastic.csv --channels R,B --recipe ggx --no-report --name rb")
+                .exit_code,
+            0);
+  const ProgramResult run = Shell("lobefit export rb.material.json --to pbrt,mitsuba,gltf,osl");
+  EXPECT_EQ(run.exit_code, 3) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("pbrt, mitsuba, gltf cannot hold this material: --channels rgb: needs R G B"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "rb.pbrt"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "rb.mitsuba.xml"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "rb.osl"));
+}
+
 // What is said of the numbers: asked only where asked, exactly only of what was not refitted.
 TEST_F(ExportVerb, SaysHowTheNumbersCame) {
   const ProgramResult chosen = Shell("lobefit export brushed_metal.material.json --to pbrt --name chosen");

@@ -13,6 +13,7 @@
 #include "lobefit/io/merl/writer.h"
 #include "lobefit/io/mountain/writer.h"
 #include "lobefit/io/read.h"
+#include "lobefit/measurement/spectrum.h"
 
 namespace lobefit {
 namespace {
@@ -86,6 +87,21 @@ TEST(WriteMountain, OneFileAnIncidence) {
     std::filesystem::remove(path);
   }
   EXPECT_THROW(WriteMountain(Rows(brdf, {{"450nm", "550nm", "650nm"}, {450, 550, 650}}), file.path()), UsageError);
+}
+
+// X Y Z are those of the same primaries as everywhere, to all their digits.
+TEST(WriteMountain, ColoursComeBack) {
+  const TemporaryFile file;
+  for (const auto& path : WriteMountain(Rows(TestBrdf(), kThreeChannels), file.path())) {
+    Measurement m = ReadMeasurement(path);
+    EXPECT_EQ(m.channels.names, (std::vector<std::string>{"X", "Y", "Z"}));
+    Apply(MakeChannelMap("rgb", m.channels), &m);
+    for (std::size_t i = 0; i < m.samples.size(); ++i) {
+      ASSERT_NEAR(m.samples.values[1][i] / m.samples.values[0][i], 0.5, 2e-6);
+      ASSERT_NEAR(m.samples.values[2][i] / m.samples.values[0][i], 0.25, 2e-6);
+    }
+    std::filesystem::remove(path);
+  }
 }
 
 TEST(WriteMerl, RoundTripAtBothCellPositions) {

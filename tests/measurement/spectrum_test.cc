@@ -84,7 +84,10 @@ TEST(MakeChannelMap, ListsNamesWavelengthsAndRanges) {
   EXPECT_EQ(MakeChannelMap("450:550", channels).channels.wavelengths_nm, (std::vector<double>{450, 500, 550}));
   EXPECT_EQ(MakeChannelMap("all", channels).channels.names, channels.names);
   EXPECT_EQ(MakeChannelMap("b,R", {{"R", "G", "B"}, {}}).channels.names, (std::vector<std::string>{"B", "R"}));
+  EXPECT_EQ(MakeChannelMap("450:550,500", channels).channels.wavelengths_nm, (std::vector<double>{450, 500, 550}));
   EXPECT_THROW(MakeChannelMap("nonsense", channels), UsageError);
+  EXPECT_THROW(MakeChannelMap("550,400,550nm", channels), UsageError);
+  EXPECT_THROW(MakeChannelMap("r,R", {{"R", "G", "B"}, {}}), UsageError);
   EXPECT_THROW(MakeChannelMap("rgb", {{"Y"}, {}}), UsageError);
   EXPECT_THROW(MakeChannelMap("rgb", Wavelengths(500, 700, 50)), UsageError);
 }

@@ -1,5 +1,6 @@
 #include "tasks/array_job.h"
 
+#include "text/output.h"
 #include <fmt/format.h>
 
 #include "lobefit/base/error.h"
@@ -11,7 +12,7 @@ int WriteOrSend(const ArrayJob& job, bool send) {
   if (send) {
     SendScript(script);
   } else {
-    fmt::print("Script:  {} ({} shards)\nSend it: sh {}\n", script, job.shards, script);
+    Print(fmt::format("Script:  {} ({} shards)\nSend it: sh {}\n", script, job.shards, ShellWord(script)));
   }
   return kExitDone;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "text/output.h"
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -37,7 +38,7 @@ void BatchProgress::Add(const DoneRecord& done) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++done_;
   if (lines_) {
-    fmt::print("{} {}\n", NameOf(done.status), Said(done.id, done.message));
+    Print(fmt::format("{} {}\n", NameOf(done.status), Said(done.id, done.message)));
     std::fflush(stdout);
   }
   if (!terminal_) return;

@@ -17,11 +17,12 @@ int ExportMapsFile(const std::filesystem::path& path, const ExportOptions& optio
     const FileBytes document(options.folder / (options.name + ".export.json"));
     fmt::print("{}", document.bytes());
   } else {
-    fmt::print("{}", ExportSummary(outcome));
+    Print(ExportSummary(outcome));
   }
   if (outcome.refusals.empty()) return kExitDone;
-  fmt::print(stderr, "lobefit: {}: {}; the other targets are written\n", options.material_file,
-             RefusalText(outcome.refusals));
+  Print(fmt::format("lobefit: {}: {}; the other targets are written\n", options.material_file,
+                    RefusalText(outcome.refusals)),
+        stderr);
   return kExitInput;
 }
 

@@ -10,6 +10,7 @@
 #include "tasks/array_job.h"
 #include "tasks/batch_progress.h"
 #include "tasks/batch_tasks.h"
+#include "text/output.h"
 #include "verbs/verb.h"
 #include <fmt/format.h>
 #include <unistd.h>
@@ -126,10 +127,14 @@ int DryRun(const Plan& plan) {
 }
 
 int PrintStatus(const BatchVerb& verb, const CommonOptions& common, const ResultTable& table) {
-  fmt::print("{}", common.json ? StatusToJson(table) : StatusToText(table));
+  if (common.json) {
+    fmt::print("{}", StatusToJson(table));
+  } else {
+    Print(StatusToText(table));
+  }
   const int code = table.ExitCode();
   if (code == kExitMissing && !common.json) {
-    fmt::print("Go on: lobefit batch --out {}\n", verb.out);
+    Print(fmt::format("Go on: lobefit batch --out {}\n", ShellWord(verb.out)));
   }
   return code;
 }
@@ -143,7 +148,7 @@ int CollectResults(const BatchVerb& verb, const CommonOptions& common) {
   const ResultTable table = MakeTable(list, records, common.Threads());
   if (verb.status) return PrintStatus(verb, common, table);
   WriteResults(table, common.Threads(), verb.out);
-  if (!common.json) fmt::print("Results: {}\n", (std::filesystem::path(verb.out) / "index.html").string());
+  if (!common.json) Print(fmt::format("Results: {}\n", PrintableName(std::filesystem::path(verb.out) / "index.html")));
   return PrintStatus(verb, common, table);
 }
 

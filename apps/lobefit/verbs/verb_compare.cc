@@ -107,7 +107,7 @@ GivenMaterial LoadGiven(const std::string& path) {
   given.material.termination = {true, true, "not fitted"};
   // What was assumed or left out of the file; people see it, documents keep it.
   given.material.remarks = imported.remarks;
-  for (const std::string& remark : imported.remarks) fmt::print(stderr, "lobefit: {}: {}\n", path, remark);
+  for (const std::string& remark : imported.remarks) Print(fmt::format("lobefit: {}: {}\n", path, remark), stderr);
   return given;
 }
 
@@ -176,7 +176,7 @@ int RunCompare(const CompareVerb& verb, const CommonOptions& common) {
   if (common.json) {
     fmt::print("{}", ComparisonJson(comparison, context));
   } else {
-    fmt::print("{}Result:  {}\n{}", ComparisonText(comparison, context), document.string(), picture);
+    Print(fmt::format("{}Result:  {}\n{}", ComparisonText(comparison, context), PrintableName(document), picture));
   }
   if (material.termination.converged && material.termination.determined) return kExitDone;
   std::fputs("lobefit: no recipe converged and is determined by the measurement; try a simpler one in --recipes\n",

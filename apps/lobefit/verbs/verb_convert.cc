@@ -85,11 +85,11 @@ int RunConvert(const ConvertVerb& verb, const CommonOptions& common) {
     return 0;
   }
   for (const std::filesystem::path& file : conversion.files)
-    fmt::print(messages, "{}: {}\n", PrintableName(file), format.description);
+    Print(fmt::format("{}: {}\n", PrintableName(file), format.description), messages);
   if (!shown.empty()) fmt::print(messages, "Isotropic: {}\n", shown);
-  for (const std::string& loss : conversion.losses) fmt::print(messages, "Lost: {}\n", loss);
+  for (const std::string& loss : conversion.losses) Print(fmt::format("Lost: {}\n", loss), messages);
   if (conversion.difference.compared == 0) {
-    fmt::print(messages, "Not compared: {}\n", conversion.not_compared);
+    Print(fmt::format("Not compared: {}\n", conversion.not_compared), messages);
     return 0;
   }
   fmt::print(messages, "Relative difference at {} values: median {:.2g}, largest {:.2g}\n",

@@ -107,10 +107,15 @@ int RunExport(const ExportVerb& verb, const CommonOptions& common) {
   if (!std::isnan(verb.white) || verb.normal_y != "up") throw UsageError("--white and --normal-y are for maps");
   const Material material = ReadMaterial(verb.material);
   const ExportOutcome outcome = ExportMaterial(material, options);
-  fmt::print("{}", common.json ? ExportJson(material, options, outcome) : ExportSummary(outcome));
+  if (common.json) {
+    fmt::print("{}", ExportJson(material, options, outcome));
+  } else {
+    Print(ExportSummary(outcome));
+  }
   if (outcome.refusals.empty()) return kExitDone;
-  fmt::print(stderr, "lobefit: {}: {}; the other targets are written\n", options.material_file,
-             RefusalText(outcome.refusals));
+  Print(fmt::format("lobefit: {}: {}; the other targets are written\n", options.material_file,
+                    RefusalText(outcome.refusals)),
+        stderr);
   return kExitInput;
 }
 

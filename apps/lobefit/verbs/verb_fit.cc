@@ -66,14 +66,13 @@ int RunFit(const FitVerb& verb, const CommonOptions& common) {
   if (common.json) {
     fmt::print("{}", ToJson(material));
   } else {
-    fmt::print("{}{}", Summary(material), WorstSlicePlot(material, fitted.measurement, TerminalColumns()));
-    fmt::print("Result:  {}\n", document.string());
-    fmt::print("{}", pictures);
+    Print(Summary(material) + WorstSlicePlot(material, fitted.measurement, TerminalColumns()));
+    Print(fmt::format("Result:  {}\n", PrintableName(document)) + pictures);
   }
   // The result as it is handed over: exit code 4 says that it is not to be trusted.
   const std::string doubts = DoubtsAbout(material);
   if (doubts.empty()) return kExitDone;
-  std::fprintf(stderr, "lobefit: %s\n", doubts.c_str());
+  Print(fmt::format("lobefit: {}\n", doubts), stderr);
   return kExitFit;
 }
 

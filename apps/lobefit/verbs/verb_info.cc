@@ -5,6 +5,7 @@
 
 #include "options/measurement_options.h"
 #include "tasks/stack_report.h"
+#include "text/output.h"
 #include "verbs/verb.h"
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -184,7 +185,7 @@ std::string ToJson(const Measurement& measurement, const Description& descriptio
 }
 
 std::string ToText(const Measurement& measurement, const Description& description) {
-  std::string text = fmt::format("{}: {}\n", measurement.source, measurement.format);
+  std::string text = fmt::format("{}: {}\n", Printable(measurement.source), measurement.format);
   text += fmt::format("  samples      {}\n", measurement.samples.size());
   for (int r = 0; r < kSetAsideReasons; ++r) {
     const auto reason = static_cast<SetAsideReason>(r);
@@ -240,8 +241,12 @@ std::function<int()> SetUpInfo(CLI::App* app, CommonOptions* common) {
                                                          : nullptr);
     }
     if (!picture->empty()) WriteCoveragePng(measurement, *picture);
-    fmt::print("{}\n", common->json ? ToJson(measurement, description) : ToText(measurement, description));
-    if (!picture->empty() && !common->json) fmt::print("Picture: {}\n", *picture);
+    if (common->json) {
+      fmt::print("{}\n", ToJson(measurement, description));
+      return 0;
+    }
+    Print(ToText(measurement, description) + "\n");
+    if (!picture->empty()) Print(fmt::format("Picture: {}\n", PrintableName(*picture)));
     return 0;
   };
 }

@@ -6,6 +6,7 @@
 #include "options/measurement_options.h"
 #include "options/report_formats.h"
 #include "tasks/stack_report.h"
+#include "text/output.h"
 #include "verbs/verb.h"
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ namespace {
 struct ReportVerb {
   MeasurementOptions measurement;
   std::vector<std::string> files;
-  std::string material, out, format = "png", encoding;
+  std::string material, out, format, encoding;
   double scale = 2;
 };
 
@@ -46,16 +47,21 @@ std::filesystem::path PictureOf(const ReportVerb& verb) {
   return out;
 }
 
+// --format, or what the name in --out ends in.
+std::vector<std::string> FormatsOf(const ReportVerb& verb, const std::filesystem::path& picture) {
+  return ParseReportFormats(verb.format.empty() ? picture.extension().string().substr(1) : verb.format);
+}
+
 int RunReport(const ReportVerb& verb, const CommonOptions& common) {
+  const std::filesystem::path picture = PictureOf(verb);
+  const std::vector<std::string> formats = FormatsOf(verb, picture);
   if (verb.material.ends_with(".maps.exr")) {
     if (verb.files.size() != 1) throw UsageError("maps are drawn against one image stack");
-    return ReportMaps(verb.material, verb.files[0], {verb.encoding}, ParseReportFormats(verb.format), PictureOf(verb),
-                      verb.scale);
+    return ReportMaps(verb.material, verb.files[0], {verb.encoding}, formats, picture, verb.scale);
   }
-  const std::vector<std::string> formats = ParseReportFormats(verb.format);
   std::vector<std::filesystem::path> inputs = InputPaths(verb.files);
   inputs.emplace_back(verb.material);
-  CheckReports(formats, PictureOf(verb), inputs);
+  CheckReports(formats, picture, inputs);
   const Material material = ReadMaterial(verb.material);
   Measurement measurement = verb.measurement.Load(verb.files);
   // The picture shows what was fitted.
@@ -65,7 +71,7 @@ int RunReport(const ReportVerb& verb, const CommonOptions& common) {
   ReportOptions options;
   options.threads = common.Threads();
   options.scale = verb.scale;
-  fmt::print("{}", WriteReports(formats, material, measurement, PictureOf(verb), options));
+  Print(WriteReports(formats, material, measurement, picture, options));
   return kExitDone;
 }
 
@@ -79,9 +85,9 @@ std::function<int()> SetUpReport(CLI::App* app, CommonOptions* common) {
       ->required();
   app->add_option("--out", verb->out,
                   "the picture, or the folder for it (default: NAME.report.png beside the material)");
-  app->add_option(
-      "--format", verb->format,
-      "png (default), html (live), exr (the maps behind the pictures; not of maps), or several with commas between");
+  app->add_option("--format", verb->format,
+                  "png, html (live), exr (the maps behind the pictures; not of maps), or several with commas between "
+                  "(default: what the name in --out ends in, or png)");
   app->add_option("--scale", verb->scale, "pixels to one unit of the page, which is 1320 units wide (default 2)")
       ->check(CLI::Range(0.25, 4.0));
   app->add_option("--encoding", verb->encoding, "of an image stack: how pixels are stored: linear, srgb, gamma:G");

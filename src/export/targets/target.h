@@ -65,7 +65,8 @@ struct Target {
   // One line: how to load it. {name} is the name of the material and of its files, {id} the name as an identifier,
   // {glsl} what names in GLSL begin with.
   const char* load = "";
-  bool rgb_only = false;  // holds R, G, B or one grey channel: other channels are converted for it
+  bool rgb_only = false;       // holds R, G, B or one grey channel: other channels are converted for it
+  bool by_wavelength = false;  // or a spectrum: channels without wavelengths (X Y Z) are converted for it
   // Why the target cannot hold this fit at all; "" where it can. Null: it holds every fit.
   std::string (*refusal)(const FittedBrdf& fit) = nullptr;
   std::vector<Carried> (*carries)(const FittedBrdf& fit) = nullptr;

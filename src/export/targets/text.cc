@@ -54,7 +54,7 @@ std::string PythonString(std::string_view text) {
 
 std::string CommentLines(const std::vector<std::string>& lines, std::string_view mark) {
   std::string text;
-  for (const std::string& line : lines) text += fmt::format("{} {}\n", mark, line);
+  for (const std::string& line : lines) text += fmt::format("{} {}\n", mark, Printable(line));
   return text;
 }
 

@@ -22,7 +22,7 @@ std::string Numbers9(const Color3& values, std::string_view separator = " ");
 // A literal of Python that is `text`, whatever stands in it; bytes that are not UTF-8 become '?'.
 std::string PythonString(std::string_view text);
 
-// Comment lines, each behind `mark`; or as one XML comment, in which two hyphens are set apart.
+// Comment lines, each behind `mark` and made Printable; or as one XML comment, in which two hyphens are set apart.
 std::string CommentLines(const std::vector<std::string>& lines, std::string_view mark);
 std::string XmlComment(const std::vector<std::string>& lines);
 

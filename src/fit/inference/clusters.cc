@@ -65,6 +65,12 @@ Eigen::MatrixXd InverseRootTimes(const Eigen::MatrixXd& curvature, const Eigen::
   return eigen.vectors * (factor.asDiagonal() * (eigen.vectors.transpose() * vectors));
 }
 
+Eigen::MatrixXd UnitColumns(const Eigen::MatrixXd& rows) {
+  Eigen::MatrixXd columns = rows.transpose();
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k).normalize();
+  return columns;
+}
+
 ClusterTally::ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters)
     : numbers_(&numbers),
       exact_(clusters <= kMostExact &&

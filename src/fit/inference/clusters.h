@@ -24,6 +24,10 @@ struct Cluster {
 // 1 - 1e-9) are left out: it has no residual there. `curvature`: symmetric, below 1 but for rounding.
 Eigen::MatrixXd InverseRootTimes(const Eigen::MatrixXd& curvature, const Eigen::MatrixXd& vectors);
 
+// The rows as columns of length 1. One of zeros, such as that of a number at its bound, stays one: NaN in all of it would
+// make a fit with 800 channels twice as long.
+Eigen::MatrixXd UnitColumns(const Eigen::MatrixXd& rows);
+
 // CR2 [Bell and McCaffrey 2002]: the filling is the sum of a a^T with a = (1 - curvature)^(-1/2) score, which has no
 // bias where residuals are independent and of one variance. For a number z^T a of the whitened coordinates the degrees
 // of freedom are those of the chi-square with the mean and variance that its estimated variance has there [Bell and

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "lobefit/fit/inference/bread.h"
+#include "lobefit/fit/inference/clusters.h"
 #include "lobefit/fit/inference/sandwich.h"
 
 namespace lobefit {
@@ -63,7 +64,7 @@ FileErrors EstimateErrorsByFile(const Problem& problem, const Layout& layout, co
     if (!determined) entries.row(row).setZero();
   }
   entries *= bread.whitening;
-  const Eigen::MatrixXd numbers = entries.rowwise().normalized().transpose();
+  const Eigen::MatrixXd numbers = UnitColumns(entries);
   const auto one_way = [&](const Incidences& groups) {
     const Filling filling = FillSandwich(problem, layout, u, bread, groups, numbers, pool);
     return OneWay{(entries * filling.clusters).cwiseProduct(entries).rowwise().sum(), filling.freedom};

@@ -7,6 +7,7 @@
 #include <Eigen/SparseCore>
 
 #include "lobefit/fit/inference/bread.h"
+#include "lobefit/fit/inference/clusters.h"
 #include "lobefit/fit/inference/sandwich.h"
 #include "lobefit/fit/objective/gains.h"
 
@@ -56,8 +57,7 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
   Eigen::MatrixXd entries = jacobian;
   for (const Eigen::Index row : without_error) entries.row(row).setZero();
   entries = (SparseOf(entries) * bread.whitening).eval();
-  const Filling filling =
-      FillSandwich(problem, layout, u, bread, incidences, entries.rowwise().normalized().transpose(), pool);
+  const Filling filling = FillSandwich(problem, layout, u, bread, incidences, UnitColumns(entries), pool);
   const auto spread = [&](const Eigen::MatrixXd& middle) {
     Eigen::MatrixXd covariance = Spread(entries, middle);
     for (const Eigen::Index row : without_error) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -59,16 +60,17 @@ bool SameRings(const AngleBasis& a, const AngleBasis& b) {
          });
 }
 
-// The bases that the file may use: Klems' and those that it defines. A definition under Klems' name must be Klems'.
-std::vector<AngleBasis> ReadBases(const XmlFile& xml, pugi::xml_node definition) {
-  std::vector<AngleBasis> bases = KlemsBases();
+// The bases that the file may use, by their names in lower case: Klems' and those that it defines. A definition under
+// Klems' name must be Klems'.
+using Bases = std::map<std::string, AngleBasis>;
+
+Bases ReadBases(const XmlFile& xml, pugi::xml_node definition) {
+  Bases bases;
+  for (const AngleBasis& basis : KlemsBases()) bases.emplace(ToLower(basis.name), basis);
   for (const pugi::xml_node element : definition.children("AngleBasis")) {
     AngleBasis basis = ReadBasis(xml, element);
-    const auto known = std::find_if(bases.begin(), bases.end(),
-                                    [&](const AngleBasis& b) { return ToLower(b.name) == ToLower(basis.name); });
-    if (known == bases.end()) {
-      bases.push_back(std::move(basis));
-    } else if (!SameRings(*known, basis)) {
+    const auto [known, is_new] = bases.try_emplace(ToLower(basis.name), basis);
+    if (!is_new && !SameRings(known->second, basis)) {
       xml.Fail(element, "the basis '" + Excerpt(basis.name) +
                             "' is defined with other rings than that name stands for; "
                             "give it another name");
@@ -77,15 +79,19 @@ std::vector<AngleBasis> ReadBases(const XmlFile& xml, pugi::xml_node definition)
   return bases;
 }
 
-const AngleBasis& FindBasis(const XmlFile& xml, pugi::xml_node block, const char* element_name,
-                            const std::vector<AngleBasis>& bases) {
+const AngleBasis& FindBasis(const XmlFile& xml, pugi::xml_node block, const char* element_name, const Bases& bases) {
+  constexpr std::size_t kMostNamed = 20;
   const pugi::xml_node element = xml.OnlyChild(block, element_name);
+  const auto found = bases.find(ToLower(xml.Text(element)));
+  if (found != bases.end()) return found->second;
   std::vector<std::string> names;
-  for (const AngleBasis& basis : bases) {
-    if (ToLower(basis.name) == ToLower(xml.Text(element))) return basis;
-    names.push_back(basis.name);
+  for (const auto& [lower, basis] : bases) {
+    if (names.size() < kMostNamed) names.push_back(Excerpt(basis.name));
   }
-  xml.Fail(element, std::string(element_name) + " is '" + Excerpt(xml.Text(element)) + "'; known are " + Join(names));
+  const std::string more =
+      bases.size() > names.size() ? " and " + std::to_string(bases.size() - names.size()) + " more" : "";
+  xml.Fail(element,
+           std::string(element_name) + " is '" + Excerpt(xml.Text(element)) + "'; known are " + Join(names) + more);
 }
 
 // Directions from the file's patterns: `incident` is the patch or disk position of the light's propagation, `exit` that
@@ -132,7 +138,7 @@ std::vector<double> ReadMatrix(const XmlFile& xml, const XmlBlock& block, std::s
 
 Measurement ReadMatrices(const XmlFile& xml, pugi::xml_node definition, const XmlStructure& structure,
                          const XmlSide& chosen, const XmlSelection& selected) {
-  const std::vector<AngleBasis> bases = ReadBases(xml, definition);
+  const Bases bases = ReadBases(xml, definition);
   const AngleBasis& incident_basis = FindBasis(xml, selected.blocks[0].element, "ColumnAngleBasis", bases);
   const AngleBasis& exit_basis = FindBasis(xml, selected.blocks[0].element, "RowAngleBasis", bases);
   const std::optional<std::size_t> count = CheckedProduct({incident_basis.size(), exit_basis.size()});

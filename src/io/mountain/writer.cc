@@ -1,5 +1,6 @@
 #include "lobefit/io/mountain/writer.h"
 
+#include <array>
 #include <cmath>
 #include <ostream>
 
@@ -9,6 +10,7 @@
 #include "lobefit/base/text/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
+#include "lobefit/measurement/spectrum.h"
 
 namespace lobefit {
 namespace {
@@ -22,9 +24,15 @@ struct Columns {
 Columns ColumnsOf(const Channels& channels) {
   if (channels.size() == 1) return {"CIE-Y", {{1}}};
   if (channels.names == std::vector<std::string>{"X", "Y", "Z"}) return {"CIE-XYZ", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  // Linear sRGB to CIE XYZ, D65 (IEC 61966-2-1).
   if (channels.names == std::vector<std::string>{"R", "G", "B"}) {
-    return {"CIE-XYZ", {{0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505}}};
+    Columns columns = {"CIE-XYZ", std::vector(3, std::vector<double>(3))};
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      std::array<double, 3> primary = {};
+      primary[channel] = 1;
+      const std::array<double, 3> xyz = XyzFromSrgb(primary);
+      for (std::size_t column = 0; column < 3; ++column) columns.share[column][channel] = xyz[column];
+    }
+    return columns;
   }
   throw UsageError("a Mountain file holds CIE Y or X Y Z, not the channels " + Excerpt(Join(channels.names), 80) +
                    "; convert them with --channels rgb or luminance");

@@ -26,6 +26,11 @@ XmlFile::XmlFile(const InputFile& file, std::size_t most_elements) : file_(file)
         file, LineOfByte(file.bytes, at),
         std::string("is not well-formed XML here: ") + result.description() + "; export or fetch the file again");
   }
+  for (std::size_t begin = 0, lines = 0; begin < file.bytes.size(); begin += kBlock) {
+    lines_before_.push_back(lines);
+    const std::string_view block = file.bytes.substr(begin, kBlock);
+    lines += static_cast<std::size_t>(std::count(block.begin(), block.end(), '\n'));
+  }
   CheckDepth();
 }
 
@@ -98,12 +103,17 @@ std::string_view XmlFile::Text(pugi::xml_node element) const {
   return Trim(file_.bytes.substr(static_cast<std::size_t>(offset) + mark, length));
 }
 
+std::size_t XmlFile::LineAt(std::size_t byte) const {
+  const std::size_t block = std::min(byte, file_.bytes.size() - 1) / kBlock;
+  return lines_before_[block] + LineOfByte(file_.bytes.substr(block * kBlock), byte - block * kBlock);
+}
+
 std::size_t XmlFile::Line(pugi::xml_node element) const {
-  return LineOfByte(file_.bytes, static_cast<std::size_t>(std::max<std::ptrdiff_t>(element.offset_debug(), 0)));
+  return LineAt(static_cast<std::size_t>(std::max<std::ptrdiff_t>(element.offset_debug(), 0)));
 }
 
 std::size_t XmlFile::Line(std::string_view piece) const {
-  return LineOfByte(file_.bytes, static_cast<std::size_t>(piece.data() - file_.bytes.data()));
+  return LineAt(static_cast<std::size_t>(piece.data() - file_.bytes.data()));
 }
 
 void XmlFile::Fail(pugi::xml_node element, const std::string& message) const {

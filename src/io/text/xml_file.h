@@ -40,8 +40,12 @@ class XmlFile {
  private:
   void CheckSize(std::size_t most_elements) const;
   void CheckDepth() const;
+  std::size_t LineAt(std::size_t byte) const;
 
   const InputFile& file_;
+  // [k]: line ends before byte k kBlock. Readers ask for the line of each of many elements.
+  static constexpr std::size_t kBlock = 4096;
+  std::vector<std::size_t> lines_before_;
   pugi::xml_document document_;
 };
 

@@ -54,6 +54,15 @@ TEST(InverseRoot, ZerosOfManyChannelsAreOnlyPassedOver) {
 }
 
 // G clusters that are all alike: G - 1 degrees of freedom, by the exact formula and by the one for many.
+// A number at its bound has no part in any coordinate.
+TEST(UnitColumns, ARowOfZerosStaysOne) {
+  Eigen::MatrixXd rows(2, 3);
+  rows << 2, 3, 6, 0, 0, 0;
+  const Eigen::MatrixXd columns = UnitColumns(rows);
+  EXPECT_TRUE(columns.col(0).isApprox(Eigen::Vector3d(2, 3, 6) / 7, 1e-15));
+  EXPECT_TRUE(columns.col(1).isZero(0));
+}
+
 TEST(DegreesOfFreedom, AreOneLessThanTheNumberOfEqualClusters) {
   const Matrix numbers = Matrix::Identity(4, 4);
   for (const std::size_t clusters : {2U, 3U, 8U, 36U, 100U, 101U, 5000U}) {

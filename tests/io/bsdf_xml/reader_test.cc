@@ -1,5 +1,6 @@
 #include "lobefit/io/bsdf_xml/reader.h"
 
+#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -57,6 +58,10 @@ TEST(KlemsBases, HaveTheirPatchesAndCoverTheHemisphere) {
     EXPECT_NEAR(solid, 2 * kPi, 1e-12) << basis.name;
     EXPECT_NEAR(projected, kPi, 1e-12) << basis.name;
   }
+  // Half: WINDOW's rings end at 6.5, 19.5, 32.5, 46.5, 61.5, 76.5 and 90 degrees.
+  const std::vector<double> ends = {6.5, 19.5, 32.5, 46.5, 61.5, 76.5, 90};
+  ASSERT_EQ(bases[1].rings.size(), ends.size());
+  for (std::size_t k = 0; k < ends.size(); ++k) EXPECT_EQ(bases[1].rings[k].upper_deg, ends[k]);
   // Full: ring 2 begins at patch 9 and has 16 patches of 22.5 degrees; the last ring's centre is 82.5 degrees.
   const std::vector<AngleBasis::Patch> full = bases[0].Patches();
   ExpectAngles(full[0].direction, 0, 0);
@@ -84,6 +89,24 @@ TEST(BsdfXml, ColumnsAreIncidentPatches) {
                ring2 = (std::cos(27 * degree) - std::cos(46 * degree)) / 12;
   EXPECT_NEAR(m.samples.solid_angle[at] / m.samples.solid_angle[0], ring1 * ring2 / (cap * cap), 1e-12);
   EXPECT_EQ(m.conventions.at("side"), "front (block 'Reflection Back', default)");
+}
+
+// Bases are found by their names and lines are counted once: 20 000 of them took 21 s.
+TEST(BsdfXml, ManyBasesTakeNoTime) {
+  std::string bases;
+  for (int k = 0; k < 20000; ++k) {
+    bases += "<AngleBasis><AngleBasisName>B" + std::to_string(k) +
+             "</AngleBasisName>\n<AngleBasisBlock><nPhis>1</nPhis><ThetaBounds><LowerTheta>0</LowerTheta>"
+             "<UpperTheta>90</UpperTheta></ThetaBounds></AngleBasisBlock>\n</AngleBasis>\n";
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const Measurement m =
+      ReadBytes(ReadBsdfXml, File("Columns", Data("Visible", "Reflection Back", Bases("b19999", "B7"), "0.25"), bases));
+  EXPECT_EQ(m.samples.values[0], std::vector<double>{0.25});
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 3);
+  EXPECT_EQ(ErrorOf(ReadBsdfXml, File("Columns", Data("Visible", "Reflection Back", Bases("B", "B7"), "0.25"), bases)),
+            "line 60013: ColumnAngleBasis is 'B'; known are B0, B1, B10, B100, B1000, B10000, B10001, B10002, B10003, "
+            "B10004, B10005, B10006, B10007, B10008, B10009, B1001, B10010, B10011, B10012, B10013 and 19983 more");
 }
 
 TEST(BsdfXml, RowsAreTransposed) {

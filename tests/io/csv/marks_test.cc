@@ -160,6 +160,14 @@ TEST(CsvLimits, ColumnsWavelengthsAndLines) {
     wander += "10," + std::to_string(i % 80) + "," + std::to_string(400 + 0.1 * i) + ",1\n";
   EXPECT_NE(MessageOf(wander).find("5000 different wavelengths at 80 pairs of directions; at most 4096"),
             std::string::npos);
+  std::string scattered = "theta_i,theta_o,wavelength_nm,brdf\n";
+  for (int i = 0; i < 8000; ++i) {
+    scattered += "10," + std::to_string(0.01 * (i + 1)) + "," +
+                 std::to_string(i % 4000 + 400 + (i % 4000) * (i % 4000) * 1e-4) + ",1\n";
+  }
+  EXPECT_NE(
+      MessageOf(scattered).find("4000 wavelengths at 8000 pairs of directions, but only 8000 rows: most pairs lack"),
+      std::string::npos);
 }
 
 }  // namespace

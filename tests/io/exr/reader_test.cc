@@ -65,6 +65,30 @@ TEST(Exr, SliceAxesAreThoseOfTheFormat) {
   EXPECT_NEAR(RadiansToDegrees(bottom_right.phi_d), 90, 1e-9);
 }
 
+// Both kinds of slice cut the same pairs of directions: the pixels' measures make sums over them the same integrals.
+TEST(Exr, SlicesIntegrateAlike) {
+  const auto sums = [](ExrAxes axes) {
+    constexpr std::size_t kSize = 400;
+    ExrMap map;
+    map.axes = axes;
+    double sum = 0, narrow = 0;
+    for (std::size_t row = 0; row < kSize; ++row) {
+      for (std::size_t column = 0; column < kSize; ++column) {
+        Vec3 wi, wo;
+        double measure = 0;
+        if (!map.Directions(column, row, kSize, kSize, &wi, &wo, &measure)) continue;
+        sum += measure / (kSize * kSize);
+        narrow += measure / (kSize * kSize) * std::pow(ToHalfDifference(wi, wo).theta_h + 0.1, -2);
+      }
+    }
+    return std::pair(sum, narrow);
+  };
+  const auto [even, even_narrow] = sums(ExrAxes::kSlice);
+  const auto [root, root_narrow] = sums(ExrAxes::kSliceSqrt);
+  EXPECT_NEAR(root / even, 1, 1e-3);
+  EXPECT_NEAR(root_narrow / even_narrow, 1, 1e-3);
+}
+
 TEST(Exr, HemispheresComeBackAndIntegrate) {
   const TestBrdf brdf;
   for (const ExrProjection projection :

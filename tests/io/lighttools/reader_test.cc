@@ -41,6 +41,20 @@ TEST(LightTools, AnglesAreAbsoluteAndTheLightStandsAtNinetyDegrees) {
   EXPECT_EQ(back.samples.values[0], (std::vector<double>{11, 12, 15}));
 }
 
+// The plane of incidence is counted as the azimuths of the grid are, from where it stands at 0.
+TEST(LightTools, ThePlaneOfIncidenceTurnsCounterClockwise) {
+  const Measurement m = ReadBytes(
+      ReadLightTools, File("AOI 20 POI 30 Side Front Wavelength 550 ScatterType BRDF\nTIS 0.5\n1 2 3\n4 5 6\n"));
+  ExpectAngles(m.samples.wi(0), 20, 120);
+}
+
+TEST(LightTools, AFileOfTheBackIsReadAsTheBack) {
+  const Measurement m = ReadBytes(
+      ReadLightTools, File("AOI 10 POI 0 Side Back Wavelength 550 ScatterType BRDF\nTIS 0.5\n1 2 3\n4 5 6\n"));
+  EXPECT_EQ(m.samples.values[0], (std::vector<double>{1, 2, 5}));
+  EXPECT_EQ(m.conventions.at("side"), "back (default)");
+}
+
 TEST(LightTools, TristimulusAndWavelengthBlocksBecomeChannels) {
   const auto block = [](const std::string& keys, const std::string& values) {
     return "AOI 20 Side Front ScatterType BRDF " + keys + " TIS 0 " + values + "\n";

@@ -201,10 +201,8 @@ TEST(Rgl, IsotropicFilesHaveOneAzimuth) {
   EXPECT_LT(errors.percentile_90, 0.02);
 }
 
-// The file with only its first `azimuths` azimuths.
-std::string Cut(const std::filesystem::path& path, std::uint64_t azimuths) {
-  const FileBytes mapped(path);
-  const TensorFile file(path, mapped.bytes());
+// The fields of a file that the writer made, `file` holds their bytes.
+std::vector<TensorOutput> FieldsOf(const TensorFile& file) {
   std::vector<TensorOutput> fields;
   for (const auto& [name, type, ndim] : {std::tuple{"phi_i", TensorType::kFloat32, 1},
                                          {"theta_i", TensorType::kFloat32, 1},
@@ -214,17 +212,66 @@ std::string Cut(const std::filesystem::path& path, std::uint64_t azimuths) {
                                          {"rgb", TensorType::kFloat32, 5},
                                          {"jacobian", TensorType::kUint8, 1}}) {
     const TensorField& field = file.Get(name, type, static_cast<std::size_t>(ndim));
-    TensorOutput output = {name, type, field.shape, field.bytes};
-    const std::string_view key = name;
-    if (key == "phi_i" || key == "vndf" || key == "rgb") {
-      output.bytes = field.bytes.substr(0, field.bytes.size() / field.shape[0] * azimuths);
-      output.shape[0] = azimuths;
-    }
-    fields.push_back(output);
+    fields.push_back({name, type, field.shape, field.bytes});
   }
+  return fields;
+}
+
+std::string Written(const std::vector<TensorOutput>& fields) {
   std::ostringstream out;
   WriteTensorFile(out, fields);
   return out.str();
+}
+
+// The file with only its first `azimuths` azimuths.
+std::string Cut(const std::filesystem::path& path, std::uint64_t azimuths) {
+  const FileBytes mapped(path);
+  const TensorFile file(path, mapped.bytes());
+  std::vector<TensorOutput> fields = FieldsOf(file);
+  for (TensorOutput& output : fields) {
+    if (output.name != "phi_i" && output.name != "vndf" && output.name != "rgb") continue;
+    output.bytes = output.bytes.substr(0, output.bytes.size() / output.shape[0] * azimuths);
+    output.shape[0] = azimuths;
+  }
+  return Written(fields);
+}
+
+// The mask has a bit a node, the most significant of a byte first; those of nodes that no light reaches tell which
+// value means reliable.
+TEST(Rgl, TheMaskOfReliableNodes) {
+  const TestBrdf brdf;
+  const TemporaryFile plain;
+  RglWriteOptions options;
+  options.azimuths = 2;
+  options.polar_angles = 4;
+  options.density_size = options.table_size = 8;
+  WriteRgl(Rgb(brdf), kThreeChannels, options, plain.path());
+  const Measurement all = ReadMeasurement(plain.path());
+  const FileBytes mapped(plain.path());
+  const TensorFile file(plain.path(), mapped.bytes());
+  std::vector<TensorOutput> fields = FieldsOf(file);
+  const std::vector<std::uint64_t> shape = file.Get("rgb", TensorType::kFloat32, 5).shape;
+  const std::uint64_t nodes = shape[0] * shape[1] * shape[3] * shape[4];
+  // Every sample is reliable but two, at places that no other order of the bits has.
+  const std::size_t bad = 21, worse = all.samples.size() / 2;
+  for (const bool set_is_reliable : {true, false}) {
+    std::string mask(nodes / 8, set_is_reliable ? '\0' : '\xff');
+    for (std::size_t i = 0; i < all.samples.size(); ++i) {
+      if (i == bad || i == worse) continue;
+      const std::uint32_t node = all.samples.origin[i];
+      mask[node / 8] = static_cast<char>(mask[node / 8] ^ (0x80 >> (node % 8)));
+    }
+    fields.push_back({"valid", TensorType::kUint8, {nodes / 8}, mask});
+    const TemporaryFile masked(Written(fields));
+    fields.pop_back();
+    const Measurement m = ReadMeasurement(masked.path());
+    std::vector<std::uint32_t> expected = all.samples.origin;
+    expected.erase(expected.begin() + static_cast<std::ptrdiff_t>(worse));
+    expected.erase(expected.begin() + static_cast<std::ptrdiff_t>(bad));
+    EXPECT_EQ(m.samples.origin, expected) << set_is_reliable;
+    EXPECT_EQ(m.conventions.at("rgl-valid"),
+              set_is_reliable ? "set bits are reliable (recognised)" : "set bits are unreliable (recognised)");
+  }
 }
 
 // The file with other values in the first column of each slice, where the half vector is the normal: row r of 16 has

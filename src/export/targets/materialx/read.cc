@@ -197,6 +197,13 @@ class MaterialXReader {
     return Input(node, name) ? Vector(Source(node, name)) : otherwise;
   }
 
+  // Length 1; a lobe about a normal within the surface or below it has no value.
+  Vec3 NormalInput(pugi::xml_node node, const char* name) const {
+    const Vec3 normal = Normalized(VectorInput(node, name, {0, 0, 1}));
+    if (!(normal.z > 1e-6)) xml_.Fail(node, fmt::format("its {} does not point out of the surface", name));
+    return normal;
+  }
+
   // The azimuth whose tangent, made perpendicular to the normal, is this one.
   static double RotationOf(const Vec3& tangent, const Vec3& normal) {
     const Vec3 flat = tangent - (tangent.z / normal.z) * normal;
@@ -234,7 +241,7 @@ class MaterialXReader {
       if (roughness != 0 && own != 1) xml_.Fail(node, "a rough diffuse part is understood with the weight 1 only");
       surface->diffuse_roughness = roughness;
       for (std::size_t c = 0; c < 3; ++c) surface->diffuse[c] += own * color[c];
-      if (Input(node, "normal")) surface->diffuse_normal = Normalized(VectorInput(node, "normal", {0, 0, 1}));
+      if (Input(node, "normal")) surface->diffuse_normal = NormalInput(node, "normal");
     } else if (type == "generalized_schlick_bsdf" || type == "conductor_bsdf" || type == "dielectric_bsdf") {
       AddLobe(node, own, surface);
     } else {
@@ -263,7 +270,7 @@ class MaterialXReader {
     lobe.weight = weight;
     const std::vector<double> roughness = Values(node, "roughness", {0.05, 0.05});
     lobe.widths = {std::clamp(roughness[0], 1e-6, 1.0), std::clamp(roughness[1], 1e-6, 1.0)};
-    lobe.normal = Normalized(VectorInput(node, "normal", {0, 0, 1}));
+    lobe.normal = NormalInput(node, "normal");
     lobe.rotation = RotationOf(VectorInput(node, "tangent", {1, 0, 0}), lobe.normal);
     if (std::string_view(node.name()) == "dielectric_bsdf") {
       const double ior = Real(node, "ior", 1.5);
@@ -308,7 +315,7 @@ class MaterialXReader {
     parameters.metalness = Real(node, "base_metalness", 0);
     parameters.ior = Real(node, "specular_ior", 1.5);
     parameters.roughness = {Real(node, "specular_roughness", 0.3), Real(node, "specular_roughness_anisotropy", 0)};
-    parameters.normal = Normalized(VectorInput(node, "geometry_normal", {0, 0, 1}));
+    parameters.normal = NormalInput(node, "geometry_normal");
     parameters.rotation = RotationOf(VectorInput(node, "geometry_tangent", {1, 0, 0}), parameters.normal);
     parameters.coat = ReadCoat(node);
     return parameters;

@@ -141,6 +141,7 @@ Target MitsubaTarget() {
           .load =
               "<include filename=\"{name}.mitsuba.xml\"/>, then <ref id=\"{id}\"/>, for back faces within <bsdf "
               "type=\"twosided\">",
+          .by_wavelength = true,
           .refusal = RefuseForeignLobes,
           .carries = CarriesMitsuba,
           .own_model = SeparableModel,

@@ -175,6 +175,7 @@ Target PbrtTarget() {
   return {.name = "pbrt",
           .description = "pbrt-v4 material: conductor and diffuse",
           .load = "Include \"{name}.pbrt\"",
+          .by_wavelength = true,
           .refusal = RefuseForeignLobes,
           .carries = CarriesPbrt,
           .own_model = HeightModel,

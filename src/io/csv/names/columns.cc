@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 
 #include "lobefit/base/text/text.h"
@@ -239,6 +240,12 @@ void ParseUnit(CsvColumn* column) {
   }
 }
 
+enum class Fixed : std::uint8_t { kTried, kNot };
+
+// Kept from trying ClassifyFixed on what is left when it took a number: its answer would be none, and names of a dozen
+// numbers took most of the time of reading a head.
+CsvColumn ClassifyName(std::string_view name, Fixed fixed);
+
 }  // namespace
 
 bool ClassifyFixed(const NameList& words, CsvColumn* column) {
@@ -269,7 +276,7 @@ bool ClassifyFixed(const NameList& words, CsvColumn* column) {
     column->angle_unit = ParseAngleUnit(unit);
     return true;
   }
-  const CsvColumn left = ClassifyColumn(Joined(rest));
+  const CsvColumn left = ClassifyName(Joined(rest), Fixed::kNot);
   if (left.role != ColumnRole::kCoordinate) return false;
   column->role = ColumnRole::kFixed;
   column->coordinate = left.coordinate;
@@ -279,7 +286,9 @@ bool ClassifyFixed(const NameList& words, CsvColumn* column) {
   return true;
 }
 
-CsvColumn ClassifyColumn(std::string_view name) {
+namespace {
+
+CsvColumn ClassifyName(std::string_view name, Fixed fixed) {
   CsvColumn column;
   column.name = std::string(Trim(name));
   NameWords split = SplitName(name);
@@ -315,7 +324,8 @@ CsvColumn ClassifyColumn(std::string_view name) {
   const bool plain = split.function.empty() || split.function == "abs";
   // "theta_o=0" is no "theta_o - theta_0".
   const bool equals = name.find('=') != std::string_view::npos;
-  if (plain && equals &&
+  const bool may_be_fixed = plain && fixed == Fixed::kTried;
+  if (may_be_fixed && equals &&
       attempt([&](CsvColumn* c) { return ClassifyFixed(split.words, c) && c->role == ColumnRole::kFixed; })) {
   } else if (plain && synonym != kSynonyms.end()) {
     column.role = synonym->role;
@@ -333,13 +343,17 @@ CsvColumn ClassifyColumn(std::string_view name) {
   } else if (plain && attempt([&](CsvColumn* c) {
                return ClassifyValueOfChannel(split.words, c) && (c->role = ColumnRole::kChannel, true);
              })) {
-  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyFixed(split.words, c); })) {
+  } else if (may_be_fixed && attempt([&](CsvColumn* c) { return ClassifyFixed(split.words, c); })) {
   } else if (HoldsWord(kIgnored, joined) || IsMuellerRatio(split.words)) {
     column.role = ColumnRole::kIgnored;
   }
   ParseUnit(&column);
   return column;
 }
+
+}  // namespace
+
+CsvColumn ClassifyColumn(std::string_view name) { return ClassifyName(name, Fixed::kTried); }
 
 void SetUnit(std::string_view unit, CsvColumn* column) {
   // The unit in the name of a channel is its wavelength's.

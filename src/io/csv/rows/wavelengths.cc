@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/text/text.h"
 
 namespace lobefit {
+namespace {
+
+constexpr std::size_t kMostWavelengths = 4096;
+
+}  // namespace
 
 void WavelengthTable::Add(const Row& row) {
   const auto [number, is_new] = numbers_.try_emplace(row.nm, static_cast<std::uint32_t>(numbers_.size()));
@@ -44,6 +50,20 @@ WavelengthTable::Grouping WavelengthTable::Within(double tolerance_nm) const {
   return grouping;
 }
 
+bool WavelengthTable::HasPairAtTwo(const Grouping& grouping) const {
+  // Pair by pair: a table of pairs times channels may be far larger than the file.
+  std::vector<std::size_t> next(pair_directions_.size() + 1, 0);
+  for (const Entry& entry : entries_) ++next[entry.pair + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<const Entry*> by_pair(entries_.size());
+  for (const Entry& entry : entries_) by_pair[next[entry.pair]++] = &entry;
+  std::vector<const Entry*> last(grouping.nm.size(), nullptr);
+  return std::any_of(by_pair.begin(), by_pair.end(), [&](const Entry* entry) {
+    const Entry* before = std::exchange(last[grouping.channel[entry->wavelength]], entry);
+    return before != nullptr && before->pair == entry->pair && before->wavelength != entry->wavelength;
+  });
+}
+
 std::optional<WavelengthTable::Grouping> WavelengthTable::Wandering() const {
   constexpr double kMostWidth = 0.01;  // of the wavelength
   const std::vector<std::pair<double, std::uint32_t>> sorted(numbers_.begin(), numbers_.end());
@@ -76,19 +96,14 @@ std::optional<WavelengthTable::Grouping> WavelengthTable::Wandering() const {
     // As many digits as the channels need to be told apart by.
     grouping.nm.push_back(std::round(sum / static_cast<double>(end - begin) * 100) / 100);
   }
-  // A pair of directions that was measured at two of them: they are channels.
-  std::vector<std::uint32_t> last(pair_directions_.size() * grouping.nm.size(),
-                                  std::numeric_limits<std::uint32_t>::max());
-  for (const Entry& entry : entries_) {
-    std::uint32_t& seen = last[entry.pair * grouping.nm.size() + grouping.channel[entry.wavelength]];
-    if (seen != std::numeric_limits<std::uint32_t>::max() && seen != entry.wavelength) return std::nullopt;
-    seen = entry.wavelength;
-  }
+  if (grouping.nm.size() > kMostWavelengths || HasPairAtTwo(grouping)) return std::nullopt;
   return grouping;
 }
 
 Measurement WavelengthTable::Gather(bool keep_repeats, std::optional<double> tolerance_nm) const {
-  constexpr std::size_t kMostValues = std::size_t{1} << 28, kMostWavelengths = 4096;
+  constexpr std::size_t kMostValues = std::size_t{1} << 28;
+  // Where most of the values would be unknown.
+  constexpr std::size_t kMostSparse = std::size_t{1} << 24, kMostPerRow = 16;
   const std::optional<Grouping> wandering = tolerance_nm ? Within(*tolerance_nm) : Wandering();
   const Grouping grouping = wandering ? *wandering : Apart();
   const std::size_t channels = grouping.nm.size();
@@ -101,6 +116,13 @@ Measurement WavelengthTable::Gather(bool keep_repeats, std::optional<double> tol
   if (channels > 0 && pair_directions_.size() > kMostValues / channels) {
     throw InputError(std::to_string(channels) + " wavelengths at " + std::to_string(pair_directions_.size()) +
                      " pairs of directions are more values than are read; choose rows with --where");
+  }
+  const std::size_t cells = channels * pair_directions_.size();
+  if (cells > kMostSparse && cells / kMostPerRow > entries_.size()) {
+    throw InputError(std::to_string(channels) + " wavelengths at " + std::to_string(pair_directions_.size()) +
+                     " pairs of directions, but only " + std::to_string(entries_.size()) +
+                     " rows: most pairs lack most wavelengths; choose those of one wavelength with --where, or make "
+                     "one channel of wavelengths that wander with --wavelength-tolerance NM");
   }
   struct Sample {
     std::uint32_t pair = 0, line = 0, rows = 0, next = 0;  // next: of the same pair, 0 is none

@@ -37,7 +37,7 @@ class WavelengthTable {
   // to their neighbours, and within a hundredth of themselves, become their mean, unless a pair of directions has two
   // of them. With `tolerance_nm` those that differ by no more become their mean, and a second row of a pair in one is
   // repeated. Throws InputError for more than 4096 wavelengths, and where wavelengths times pairs are more than 2^28
-  // values.
+  // values, or more than 2^24 of which not one in 16 has a row.
   Measurement Gather(bool keep_repeats, std::optional<double> tolerance_nm = std::nullopt) const;
 
  private:
@@ -57,6 +57,8 @@ class WavelengthTable {
   Grouping Apart() const;
   Grouping Within(double tolerance_nm) const;
   std::optional<Grouping> Wandering() const;
+  // Whether a pair of directions was measured at two of the wavelengths of one channel.
+  bool HasPairAtTwo(const Grouping& grouping) const;
 
   Weights weights_;
   std::map<double, std::uint32_t> numbers_;  // nanometres -> in the order of their first rows
