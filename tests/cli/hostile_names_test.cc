@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, HostileNames,
                          testing::Values("R&D \"x\" <b>it's", "'+str(__import__('os').system('touch ran'))+'",
                                          "$(touch ran);`touch ran`", "new\nline --> ]]> *\\ \n #",
                                          "\x1b[31mred\x1b]0;titl\x07", "\xff\xfe not UTF-8",
-                                         "\xe2\x80\xae turned, {{title}} %s%n \\"));
+                                         "\xe2\x80\xae turned\xe2\x80\xac, {{title}} %s%n \\"));
 
 }  // namespace
 }  // namespace lobefit

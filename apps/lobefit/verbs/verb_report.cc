@@ -36,7 +36,7 @@ std::filesystem::path PictureOf(const ReportVerb& verb) {
   }
   name += ".report.png";
   if (verb.out.empty()) return std::filesystem::path(verb.material).parent_path() / name;
-  const std::filesystem::path out = verb.out;
+  std::filesystem::path out = verb.out;
   if (std::filesystem::is_directory(out)) return out / name;
   const std::vector<std::string> formats = ReportFormats();
   const std::string extension = out.extension().string();
