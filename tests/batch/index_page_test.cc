@@ -84,6 +84,20 @@ TEST_F(IndexPageTest, HoldsRowsIntervalsAndPictures) {
   EXPECT_EQ(data["pictures"][2]["measured"], true);
 }
 
+// A reflectance that one material of many has would leave the picture of two columns empty.
+TEST_F(IndexPageTest, DrawsWhatMostRowsHave) {
+  const auto row = [](const std::string& more) {
+    return R"({"verdict":"close","typical_error":3,"alpha_x":0.2,"alpha_x.stderr":0.001)" + more + "}";
+  };
+  const std::string with_f0 = R"(,"f0[Y]":0.5,"f0[Y].stderr":0.01)";
+  Add("a", TaskStatus::kFitted, row(with_f0));
+  for (const char* id : {"b", "c"}) Add(id, TaskStatus::kFitted, row(""));
+  records_.segments.resize(1);
+  EXPECT_EQ(DataOf(Page({}))["scatter_y"], "typical_error");
+  Add("d", TaskStatus::kFitted, row(with_f0));
+  EXPECT_EQ(DataOf(Page({}))["scatter_y"], "f0[Y]");
+}
+
 TEST_F(IndexPageTest, TextOfStrangersIsNoMarkup) {
   Fill(1);
   const std::string page = Page({"<title>"});

@@ -116,8 +116,9 @@ class PageColumns {
     for (const ResultTable::Row* row : rows) Add(texts.Of(*row));
   }
 
-  // Columns, rows by column, half intervals by place of the column, and the reflectance that most rows have, which with
-  // the width says most of a material.
+  // Columns, rows by column, half intervals by place of the column, and what is drawn against the width at first: the
+  // reflectance that most rows have, which with it says most of a material, or where fewer than half have one the error,
+  // which all have.
   Json ToJson() && {
     Json columns = Json::array(), errors = Json::object();
     std::string scatter_y;
@@ -133,6 +134,10 @@ class PageColumns {
         most = column.numbers;
       }
     }
+    const bool has_error = std::any_of(columns_.begin(), columns_.end(), [&](const Column& column) {
+      return table_.columns[column.place] == "typical_error";
+    });
+    if (2 * most < rows_.size() && has_error) scatter_y = "typical_error";
     return {{"columns", columns}, {"rows", std::move(rows_)}, {"errors", errors}, {"scatter_y", scatter_y}};
   }
 
