@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 
 #include "lobefit/fit/search/active_set.h"
 #include "lobefit/fit/search/gram_cost.h"
+#include "lobefit/fit/search/kink.h"
 
 namespace lobefit {
 namespace {
@@ -39,6 +41,25 @@ void AddToDiagonal(const Eigen::VectorXd& values, ArrowMatrix* gram) { gram->Add
 bool AllFinite(const Eigen::MatrixXd& gram) { return gram.allFinite(); }
 bool AllFinite(const ArrowMatrix& gram) { return gram.AllFinite(); }
 
+// Goes on from `at` by a step along the kink between it and the point that was refused; false where there is none, or
+// the cost does not fall.
+bool GoAlongKink(const BoundedObjective& objective, const CostModel& refused, const Eigen::VectorXd& damping,
+                 Descent* at) {
+  const CostModel here = {at->u, at->cost, at->gram, at->gradient};
+  if (!IsBeyondKink(here, refused)) return false;
+  const Eigen::VectorXd u = (at->u + StepAlongKink(here, refused, damping, objective.low, objective.high))
+                                .cwiseMax(objective.low)
+                                .cwiseMin(objective.high);
+  CostModel next = {u, 0, {}, {}};
+  next.cost = Evaluate(objective, u, &next.gram, &next.gradient);
+  if (!(next.cost < at->cost) || !AllFinite(next.gram)) return false;
+  at->u = u;
+  at->cost = next.cost;
+  at->gram = std::move(next.gram);
+  at->gradient = std::move(next.gradient);
+  return true;
+}
+
 // Marquardt's damping, by the diagonal of J^T J; steps are the minima of the damped model within the box. From a point
 // whose cost, gram and gradient are known.
 template <class Gram>
@@ -59,6 +80,14 @@ void DescendPlainly(const BoundedObjective& objective, const DescentOptions& opt
     const bool free = damping <= 1;
     if (!(cost < at->cost) || !AllFinite(gram)) {
       if (free && -step.dot(at->gradient) <= options.function_tolerance * at->cost) break;
+      if constexpr (std::is_same_v<Gram, Eigen::MatrixXd>) {
+        const Eigen::VectorXd added = damped.diagonal() - diagonal;
+        if (options.along_kinks && std::isfinite(cost) && AllFinite(gram) &&
+            GoAlongKink(objective, {tried, cost, gram, gradient}, added, at)) {
+          damping = std::max(damping / 2, 1e-12);
+          continue;
+        }
+      }
       damping *= growth;
       growth *= 2;
       continue;

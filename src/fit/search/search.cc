@@ -55,6 +55,13 @@ std::vector<DistinctMinimum> Descend(const Problem& problem, const Layout& layou
     pool->Run(minima.size(), [&](std::size_t k) { descend(k, minima[k].solution.u, finish); });
   }
   JoinFoundAgain(problem, layout, pool, &minima);
+  // Lobes that may tilt have kinks, where descents creep without an end: the white paper's of 79 coordinates did.
+  if (last && !options.trial && layout.size() < kMostDense && !minima.empty() && !minima[0].solution.converged) {
+    SolveOptions along = {.use_ceres = false, .arrow_from = kMostDense, .along_kinks = true};
+    Solution solution = Solve(problem, layout, minima[0].solution.u, along, pool);
+    solution.iterations += minima[0].solution.iterations;
+    minima[0].solution = std::move(solution);
+  }
   return minima;
 }
 

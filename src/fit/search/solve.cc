@@ -16,6 +16,7 @@ DescentOptions ToDescentOptions(const SolveOptions& options) {
   descent.max_iterations = options.max_iterations;
   descent.function_tolerance = options.function_tolerance;
   descent.use_ceres = options.use_ceres;
+  descent.along_kinks = options.along_kinks;
   return descent;
 }
 

@@ -20,6 +20,7 @@ struct SolveOptions {
   bool use_ceres = true;  // DescentOptions::use_ceres
   // From so many coordinates on descents of what is an arrow go through it: a dense step takes their cube.
   std::size_t arrow_from = kManyCoordinates;
+  bool along_kinks = false;  // DescentOptions::along_kinks
 };
 
 struct Solution {

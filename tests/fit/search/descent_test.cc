@@ -8,6 +8,8 @@
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
+#include "lobefit/fit/search/kink.h"
+
 namespace lobefit {
 namespace {
 
@@ -214,6 +216,52 @@ TEST(Descend, GoesOnThroughABentValley) {
   const Descent descent = Descend(objective, Eigen::Vector2d(-1.2, 1), {});
   EXPECT_TRUE(descent.converged);
   EXPECT_LT((descent.u - Eigen::Vector2d(1, 1)).norm(), 1e-6);
+}
+
+// A valley whose floor is a bent kink, x = y^2 / 50, that falls towards y = 2.
+BoundedObjective BentKink() {
+  BoundedObjective objective;
+  objective.low = Eigen::VectorXd::Constant(2, -5);
+  objective.high = Eigen::VectorXd::Constant(2, 5);
+  objective.residuals = 1000;
+  objective.evaluate = [](const Eigen::VectorXd& u, Eigen::MatrixXd* gram, Eigen::VectorXd* gradient) {
+    const double off = u(0) - 0.02 * u(1) * u(1), side = off < 0 ? -1 : 1;
+    const Eigen::Vector2d r(10 + 30 * std::fabs(off), u(1) - 2);
+    if (gram != nullptr) {
+      Eigen::Matrix2d j;
+      j << 30 * side, -1.2 * side * u(1), 0, 1;
+      *gram = j.transpose() * j;
+      *gradient = j.transpose() * r;
+    }
+    return r.squaredNorm() / 2;
+  };
+  return objective;
+}
+
+TEST(Descend, GoesAlongAKink) {
+  const BoundedObjective objective = BentKink();
+  DescentOptions options;
+  const Eigen::Vector2d start(0.5, -1);
+  const double crept = std::fabs(Descend(objective, start, options).u(1) - 2);
+  EXPECT_GT(crept, 1) << "plain steps";
+  options.along_kinks = true;
+  const Descent descent = Descend(objective, start, options);
+  EXPECT_TRUE(descent.converged);
+  EXPECT_LT(std::fabs(descent.u(1) - 2), 0.3 * crept);
+  EXPECT_NEAR(descent.u(0), 0.02 * descent.u(1) * descent.u(1), 1e-3);
+}
+
+// Of two planes that cross at x = 1 the step ends there, at the minimum of both along the crossing.
+TEST(StepAlongKink, EndsWhereBothModelsAreEqual) {
+  const Eigen::Matrix2d gram = Eigen::Vector2d(0.1, 1).asDiagonal();
+  const CostModel here = {Eigen::Vector2d(0, 0), 2, gram, Eigen::Vector2d(-1, -1)},
+                  there = {Eigen::Vector2d(3, 1), 4.5, gram, Eigen::Vector2d(1.5, 0)};
+  EXPECT_TRUE(IsBeyondKink(here, there));
+  EXPECT_FALSE(IsBeyondKink(here, {there.at, 0, gram, Eigen::Vector2d(-1, 0)}));
+  const Eigen::VectorXd far = Eigen::VectorXd::Constant(2, 100);
+  const Eigen::VectorXd end = here.at + StepAlongKink(here, there, Eigen::VectorXd::Zero(2), -far, far);
+  EXPECT_NEAR(here.cost + here.Change(end), there.cost + there.Change(end), 0.02);
+  EXPECT_NEAR(end(1), 1, 1e-6);
 }
 
 // Catches a coordinate that is held at a bound although the cost falls inwards.
