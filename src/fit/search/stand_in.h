@@ -13,8 +13,8 @@ namespace lobefit {
 // kinks takes 11 for over a hundred.
 //
 // `scale`: samples of the whole over those of the part. Both have the same box; their `evaluate` is used, not the
-// arrow. Ends where a round gains no more than options.function_tolerance of the cost, where damping no longer helps,
-// or after options.max_iterations rounds, which Descent::iterations counts; `converged` is asked of the whole.
+// arrow. Ends where a round gains no more than options.function_tolerance of the cost, or 3e-6 of it at what is a minimum
+// (IsMinimum), where damping no longer helps, or after options.max_iterations rounds, which Descent::iterations counts; `converged` is asked of the whole.
 Descent DescendByStandIn(const BoundedObjective& whole, const BoundedObjective& part, double scale,
                          const Eigen::VectorXd& start, const DescentOptions& options);
 
