@@ -46,6 +46,6 @@ compile_brdf_explorer() {
 compile_mitsuba() {
   local build=$1/build
   [ "$build/lobefit-mitsuba" -nt "$here/mitsuba.cc" ] && return
-  eval "${CXX:-g++} $(flags_of "$build" src/mitsuba/mitsuba.cpp)" '"$here/mitsuba.cc"' -o '"$build/lobefit-mitsuba"' \
+  eval "${CXX:-g++} $(flags_of "$build" src/core/parser.cpp)" '"$here/mitsuba.cc"' -o '"$build/lobefit-mitsuba"' \
     '-L"$build"' '-Wl,-rpath,"$build"' -lmitsuba '$(find "$build" -maxdepth 1 -name "libnanothread.so")' -ldl -lpthread ${LDFLAGS:-}
 }
