@@ -420,7 +420,7 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   interfaced.diffuse = Diffuse::kInterfaced;
   if (!simplest.free_scale)
     add_part(interfaced, ladder.NameOf(ladder.Best()) + "+interfaced", {{{shape}}, Diffuse::kInterfaced});
-  const auto with_lobe = [](const Rung& rung, Lobe lobe) {
+  const auto with_lobe = [](const Rung& rung, const Lobe& lobe) {
     Model more = rung.recipe.model;
     more.lobes.push_back(lobe);
     return more;

@@ -132,7 +132,7 @@ void ExpectMinimum(const Recipe& recipe, const Material& material, const Measure
 }  // namespace
 
 Material CheckedFit(const Recipe& recipe, const FitOptions& options, Measurement* measurement) {
-  const Material material = Fit(recipe, options, measurement);
+  Material material = Fit(recipe, options, measurement);
   const bool other_cost = material.instrument.has_value() || !measurement->samples.sigma.empty() ||
                           recipe.energy == EnergyChoice::kConserving || (material.metric == "asinh");
   if (material.termination.converged && !other_cost) ExpectMinimum(recipe, material, *measurement);
