@@ -132,6 +132,11 @@ TEST(MaterialXInputs, NormalsPointOutOfTheSurface) {
   const std::string tangent = "<tangent name=\"t\" type=\"vector3\"/>";
   const std::string flat = Conductor("<input name=\"normal\" type=\"vector3\" nodename=\"t\"/>", tangent);
   EXPECT_THAT(ErrorOf(flat), HasSubstr("its normal does not point out of the surface"));
+  const std::string coat = Input("coat_weight", "float", "1");
+  std::string coated = OpenPbr(coat + "<input name=\"geometry_coat_normal\" type=\"vector3\" nodename=\"t\"/>");
+  coated.insert(coated.rfind("</materialx>"), tangent);
+  EXPECT_THAT(ErrorOf(coated), HasSubstr("its geometry_coat_normal does not point out of the surface"));
+  EXPECT_THAT(ErrorOf(OpenPbr(coat + Input("coat_darkening", "float", "-3"))), HasSubstr("the darkening -3"));
 }
 
 // A colour of another space, and a value that is not the one used.

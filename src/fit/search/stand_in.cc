@@ -79,14 +79,15 @@ Descent DescendByStandIn(const BoundedObjective& whole, const BoundedObjective& 
       continue;
     }
     // A small decrease under strong damping says nothing of the minimum.
+    const bool free = damping <= kFirstDamping;
     const double gain = at.cost - cost;
-    const bool last = damping <= kFirstDamping && gain <= options.function_tolerance * at.cost;
+    const bool last = free && gain <= options.function_tolerance * at.cost;
     damping = damping > kFirstDamping / 3 ? damping / 3 : 0;
     at.u = u;
     at.cost = cost;
     at.gram.swap(gram);
     at.gradient.swap(gradient);
-    at.converged = (last || gain <= kSettled * at.cost) && is_minimum();
+    at.converged = (last || (free && gain <= kSettled * at.cost)) && is_minimum();
     if (last || at.converged) break;
   }
   at.converged = at.converged || is_minimum();

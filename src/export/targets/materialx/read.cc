@@ -296,12 +296,13 @@ class MaterialXReader {
     coat.roughness = {Real(node, "coat_roughness", 0), Real(node, "coat_roughness_anisotropy", 0)};
     coat.ior = Real(node, "coat_ior", coat.ior);
     coat.darkening = Real(node, "coat_darkening", coat.darkening);
-    if (!(coat.weight >= 0 && coat.weight <= 1 && coat.ior >= 1)) {
-      xml_.Fail(node,
-                fmt::format("its coat has the weight {:g} and the index {:g}; 0 to 1 and at least 1 are understood",
-                            coat.weight, coat.ior));
+    const auto is_share = [](double x) { return x >= 0 && x <= 1; };
+    if (!is_share(coat.weight) || !is_share(coat.darkening) || !(coat.ior >= 1)) {
+      xml_.Fail(node, fmt::format("its coat has the weight {:g}, the darkening {:g} and the index {:g}; 0 to 1 for the "
+                                  "first two and at least 1 are understood",
+                                  coat.weight, coat.darkening, coat.ior));
     }
-    coat.normal = Normalized(VectorInput(node, "geometry_coat_normal", {0, 0, 1}));
+    coat.normal = NormalInput(node, "geometry_coat_normal");
     coat.rotation = RotationOf(VectorInput(node, "geometry_coat_tangent", {1, 0, 0}), coat.normal);
     return coat;
   }
