@@ -69,6 +69,7 @@ TEST(OpenPbrInputs, CountOrAreErrors) {
                   ValuesOf(Import(OpenPbr(coat)))[0],
               0.5, 0.3);
   EXPECT_THAT(ErrorOf(OpenPbr(Input("coat_weight", "float", "2"))), HasSubstr("its coat has the weight 2"));
+  EXPECT_THAT(ErrorOf(OpenPbr(coat + Input("base_color", "color3", "1, 2, 1"))), HasSubstr("its base_color is 2"));
   for (const auto& [name, value] : std::vector<std::pair<const char*, const char*>>{{"specular_weight", "0.3"},
                                                                                     {"fuzz_weight", "1"},
                                                                                     {"thin_film_weight", "0.5"},

@@ -319,6 +319,9 @@ class MaterialXReader {
     parameters.normal = NormalInput(node, "geometry_normal");
     parameters.rotation = RotationOf(VectorInput(node, "geometry_tangent", {1, 0, 0}), parameters.normal);
     parameters.coat = ReadCoat(node);
+    const double brightest = *std::max_element(parameters.base_color.begin(), parameters.base_color.end());
+    if (parameters.coat.weight > 0 && !(brightest <= 1))
+      xml_.Fail(node, fmt::format("its base_color is {:g} below a coat; at most 1 is understood", brightest));
     return parameters;
   }
 
