@@ -71,6 +71,12 @@ bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit)
          used * static_cast<std::size_t>(channels_) > static_cast<std::size_t>(FreeUnknowns(model, bounds_));
 }
 
+bool TexelFitter::IsDoubtful(const MapDescent& descent) const {
+  const auto at_bound = [&](double width) { return width <= bounds_.least_width || width >= bounds_.most_width; };
+  return !descent.converged || IsRough(descent.cost, rules_.loss, data_.lights.count) ||
+         (!bounds_.width_held && at_bound(descent.point.width[0]));
+}
+
 MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent& lambert) {
   // The lobe about the Lambertian normal, and about what mirrors the brightest lights.
   const Vec3 peaks[2] = {lambert.point.normal, HighlightNormal(data_, mean_, lambert.point, bounds_)};
@@ -97,7 +103,7 @@ MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent&
   }
   std::sort(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(count),
             [](const Start& a, const Start& b) { return a.cost < b.cost; });
-  // From the best start and the best one about the other peak; where the minimum is rough from all.
+  // From the best start and the best one about the other peak; where the minimum is doubtful from all.
   const auto other = std::find_if(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(count),
                                   [&](const Start& start) { return start.peak != starts[0].peak; });
   const std::size_t few = other == starts.begin() + static_cast<std::ptrdiff_t>(count) ? 1 : 2;
@@ -106,7 +112,7 @@ MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent&
   best.cost = std::numeric_limits<double>::infinity();
   int iterations = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    if (k >= few && !rules_.every_start && !IsRough(best.cost, rules_.loss, data_.lights.count)) break;
+    if (k >= few && !rules_.every_start && !IsDoubtful(best)) break;
     const MapDescent descent = Descend(model, data_, starts[k].point, bounds_, rules_.loss, &objective_, kFineTolerance,
                                        k == 0 || rules_.every_start ? nullptr : &best);
     iterations += descent.iterations;
