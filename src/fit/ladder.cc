@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
-#include <map>
-#include <numeric>
 #include <string>
-#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,6 +14,7 @@
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/prediction.h"
 #include "lobefit/fit/objective/problem.h"
+#include "lobefit/fit/rung.h"
 #include "lobefit/fit/search/profile_knots.h"
 #include "lobefit/fit/search/search.h"
 #include "lobefit/fit/search/starts.h"
@@ -39,26 +37,6 @@ struct Split {
   Samples training, test;
 };
 
-struct Rung {
-  Recipe recipe;
-  TriedModel tried;
-  std::vector<double> mean_square;      // of each fold's test
-  std::vector<ParameterValues> shapes;  // [lobe] its ellipse on the subsample
-  // What else was found there, by name, but for coefficients of profiles.
-  std::map<std::string, std::vector<double>> others;
-  struct Radial {
-    SlopeCoordinates shape;
-    std::shared_ptr<const ProfileGrid> grid;  // null: no profile
-    std::vector<double> q;
-  };
-  std::vector<Radial> profiles;  // [lobe]
-  bool above_one = false;        // the first lobe's reflectance is at its bound
-  bool creates_energy = false;   // CreatesEnergy
-  double mean() const {
-    return std::accumulate(mean_square.begin(), mean_square.end(), 0.0) / static_cast<double>(mean_square.size());
-  }
-};
-
 std::vector<std::size_t> SpreadChannels(std::size_t channels) {
   const std::size_t count = std::min(channels, kMostChannels);
   std::vector<std::size_t> spread;
@@ -72,55 +50,6 @@ Samples SomeChannels(const Samples& samples, const std::vector<std::size_t>& ind
   for (const std::size_t c : SpreadChannels(some.values.size())) values.push_back(std::move(some.values[c]));
   some.values = std::move(values);
   return some;
-}
-
-// Fresnel terms, diffuse parts and exponents of tails as starts. Those of another number of channels are no starts.
-void StartOthersAt(const std::map<std::string, std::vector<double>>& found, std::size_t channels, Recipe* recipe) {
-  const std::vector<Parameter> parameters = Parameters(recipe->model);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const auto others = found.find(parameters[i].json_name);
-    if (others == found.end() || others->second.size() != (parameters[i].per_channel ? channels : 1)) continue;
-    if (!recipe->IsFree(i)) continue;
-    std::vector<double>& start = recipe->parameters[i].start = others->second;
-    if (recipe->parameters[i].shared) start.resize(1);
-    for (double& value : start) value = std::clamp(value, parameters[i].low, parameters[i].high);
-  }
-}
-
-// The lobes' ellipses as starts of the first lobes of a recipe, within the ranges of its parameters.
-void StartAt(const std::vector<ParameterValues>& shapes, Recipe* recipe) {
-  const std::vector<Parameter> parameters = Parameters(recipe->model);
-  for (std::size_t l = 0; l < std::min(shapes.size(), recipe->model.lobes.size()); ++l) {
-    const std::size_t first = FirstParameter(recipe->model, l);
-    for (std::size_t i = 0; i < kEllipseParameters; ++i) {
-      const Parameter& parameter = parameters[first + i];
-      if (!parameter.free) continue;
-      recipe->parameters[first + i].start = {std::clamp(shapes[l][i][0], parameter.low, parameter.high)};
-    }
-  }
-}
-
-// Profiles as starts, on the knots that they were judged with and those further out that all samples reach; where the
-// local exponent is no other than theirs.
-void StartProfilesAt(const std::vector<Rung::Radial>& found, const Samples& samples, Recipe* recipe) {
-  std::vector<std::shared_ptr<const ProfileGrid>> grids;
-  for (std::size_t l = 0; l < found.size(); ++l) {
-    grids.push_back(found[l].grid);
-    if (grids[l] == nullptr) continue;
-    const std::vector<double>& known = grids[l]->spline()->knots();
-    const std::vector<double> knots = ProfileKnots(LargestRadius(recipe->model.lobes[l], found[l].shape, samples));
-    if (knots.size() > known.size() && std::equal(known.begin(), known.end(), knots.begin()))
-      grids[l] = GridWithKnots(knots);
-  }
-  *recipe = WithGrids(*recipe, grids);
-  const std::vector<Parameter> parameters = Parameters(recipe->model);
-  for (std::size_t l = 0; l < found.size(); ++l) {
-    const std::vector<double>& q = found[l].q;
-    for (std::size_t k = 0; grids[l] != nullptr && k < grids[l]->spline()->size(); ++k) {
-      const std::size_t i = FirstParameter(recipe->model, l) + kEllipseParameters + k;
-      recipe->parameters[i].start = {std::clamp(k < q.size() ? q[k] : q.back(), parameters[i].low, parameters[i].high)};
-    }
-  }
 }
 
 class Ladder {
@@ -225,12 +154,8 @@ class Ladder {
     choice.recipe = rung.recipe;
     choice.recipe.metric = wanted_;
     // Several lobes have hundreds of starts, and those of a spectrum cost most; the search was made on the subsample.
-    choice.warm = rung.shapes.size() > 1 || channels_.size() == kMostChannels;
-    if (choice.warm) {
-      StartAt(rung.shapes, &choice.recipe);
-      StartOthersAt(rung.others, all_channels_, &choice.recipe);
-      StartProfilesAt(rung.profiles, samples, &choice.recipe);
-    }
+    choice.warm = rung.found.shapes.size() > 1 || channels_.size() == kMostChannels;
+    if (choice.warm) StartAt(rung.found, all_channels_, samples, &choice.recipe);
     choice.recipe.reason = fmt::format(
         "of {} models the simplest whose error on held-out incident directions ({:.3g}) is within one standard error "
         "of the least ({:.3g}, {}); one lobe of the simplest kind: {:.3g}",
@@ -253,7 +178,7 @@ class Ladder {
     rung.recipe.parameters = DefaultRecipe(model, name).parameters;
     if (scaled_) LiftReflectanceBounds(&rung.recipe);
     const Recipe wanted = rung.recipe;
-    if (base != nullptr) StartAt(base->shapes, &rung.recipe);
+    if (base != nullptr) StartShapesAt(base->found, &rung.recipe);
     rung.tried.name = wanted.name;
     try {
       const Recipe recipe = WithKnots(rung.recipe, all_, channels_, options_, &pool_);
@@ -265,28 +190,7 @@ class Ladder {
       const std::vector<double>& reflectance = values[FirstFresnel(recipe.model, 0)];
       rung.above_one = recipe.model.lobes[0].fresnel == Fresnel::kSchlick &&
                        std::any_of(reflectance.begin(), reflectance.end(), [](double f0) { return f0 >= 1 - 1e-6; });
-      for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
-        const auto first = values.begin() + static_cast<std::ptrdiff_t>(FirstParameter(recipe.model, l));
-        rung.shapes.emplace_back(first, first + static_cast<std::ptrdiff_t>(kEllipseParameters));
-      }
-      const std::vector<Parameter> parameters = Parameters(recipe.model);
-      for (std::size_t i = 0; i < parameters.size(); ++i) {
-        if (parameters[i].group != ParameterGroup::kShape) rung.others[parameters[i].json_name] = values[i];
-      }
-      const KernelModel kernel = layout.ToKernel(minima[0].solution.u.data());
-      for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
-        rung.profiles.push_back({kernel.lobes[l].shape.slope, nullptr, {}});
-        if (FamilyOf(recipe.model.lobes[l].ndf) != Family::kProfile) continue;
-        rung.profiles[l].grid = GridOf(recipe.model.lobes[l]);
-        for (std::size_t i = FirstParameter(recipe.model, l) + kEllipseParameters; i < FirstFresnel(recipe.model, l);
-             ++i)
-          rung.profiles[l].q.push_back(values[i][0]);
-      }
-      for (std::size_t l = 0; l < recipe.model.lobes.size(); ++l) {
-        if (!HasExponent(recipe.model.lobes[l].ndf)) continue;
-        const std::size_t exponent = FirstParameter(recipe.model, l) + kEllipseParameters;
-        rung.others[parameters[exponent].json_name] = values[exponent];
-      }
+      rung.found = FoundAt(layout, minima[0].solution.u);
       rung.mean_square.assign(folds_.size(), kNan);
       if (!recipe.free_scale)
         rung.creates_energy = CreatesEnergy(BalanceAt(wi_, recipe.model, values, channels_, &pool_));
@@ -386,7 +290,7 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   const Rung* const with_profile = ladder.Try(free, profile_name);
   // The scatter of polished surfaces is no lobe of facets. A wide lobe has the shape of one, which is searched above.
   constexpr double kPolished = 0.1;
-  if (ladder.First().shapes[0][0][0] < kPolished) {
+  if (ladder.First().found.shapes[0][0][0] < kPolished) {
     Model scatter;
     scatter.lobes = {{IsRound(shape) ? Ndf::kAbg : Ndf::kAbgAnisotropic, Masking::kNone, Fresnel::kNone}};
     ladder.Try(scatter, NameOf(NdfChoices(), scatter.lobes[0].ndf));
