@@ -59,7 +59,6 @@ void ReportParameters(const Layout& layout, const std::vector<double>& u, const 
   std::vector<Eigen::Index> free_rows;
   std::vector<double> factors;
   const std::vector<std::string> names = EntryNames(parameters, material->channels);
-  const bool drift_estimated = recipe.instrument.drift && !recipe.instrument.drift->sd;
   Eigen::Index row = 0;
   std::size_t linear_seen = 0;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -74,8 +73,7 @@ void ReportParameters(const Layout& layout, const std::vector<double>& u, const 
       fitted.freedom.push_back(std::isnan(fitted.standard_error_clustered.back())
                                    ? kNan
                                    : uncertainty.freedom[static_cast<std::size_t>(row)]);
-      if (drift_estimated)
-        fitted.independent_freedom.push_back(uncertainty.independent_freedom[static_cast<std::size_t>(row)]);
+      fitted.independent_freedom.push_back(uncertainty.independent_freedom[static_cast<std::size_t>(row)]);
       if (fitted.free) {
         free_rows.push_back(row);
         factors.push_back(1 / InsideFactor(parameters[i]));

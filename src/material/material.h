@@ -25,8 +25,8 @@ struct FittedParameter {
   std::vector<double> standard_error_clustered;
   // Degrees of freedom of that error: 95 % within this quantile of Student's t. NaN where it is NaN.
   std::vector<double> freedom;
-  // The same of `standard_error`, whose errors are normal but where the drift of the gains was estimated. Empty:
-  // normal.
+  // The same of `standard_error`: few where few samples decide, or few gains of which a drift was estimated. Empty or
+  // infinite: its errors are normal.
   std::vector<double> independent_freedom = {};
   bool free = true;
   bool at_bound = false;

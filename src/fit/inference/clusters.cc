@@ -10,14 +10,6 @@
 namespace lobefit {
 namespace {
 
-constexpr std::size_t kMostExact = 100;
-// Numbers of 8 bytes that the exact degrees of freedom may store.
-constexpr double kMostStored = 4e6;
-
-// From here on the curvature of many channels, which meet in the few columns of the shape only, is mostly zeros: its
-// products with a vector took half of a fit with 800 channels.
-constexpr Eigen::Index kLeastSparse = 200;
-
 // Of a positive matrix, from below, by powers of it.
 template <class Matrix>
 double LargestEigenvalue(const Matrix& matrix) {
@@ -71,68 +63,35 @@ Eigen::MatrixXd UnitColumns(const Eigen::MatrixXd& rows) {
   return columns;
 }
 
-ClusterTally::ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters)
-    : numbers_(&numbers),
-      exact_(clusters <= kMostExact &&
-             static_cast<double>(clusters) * static_cast<double>(numbers.size()) <= kMostStored),
-      filling_(Eigen::MatrixXd::Zero(numbers.rows(), numbers.rows())) {
-  h_ = h2_ = e_ = e2_ = Eigen::ArrayXd::Zero(numbers.cols());
-  if (!exact_) sparse_ = numbers.sparseView();
+Cluster::Cluster(Eigen::Index m, Eigen::Index numbers)
+    : curvature(Eigen::MatrixXd::Zero(m, m)),
+      score(Eigen::VectorXd::Zero(m)),
+      scatter(Eigen::MatrixXd::Zero(m, m)),
+      squares(Eigen::ArrayXd::Zero(numbers)),
+      fourths(Eigen::ArrayXd::Zero(numbers)) {}
+
+void Cluster::Add(const Cluster& other) {
+  curvature += other.curvature;
+  score += other.score;
+  scatter += other.scatter;
+  squares += other.squares;
+  fourths += other.fourths;
+}
+
+ClusterTally::ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters) : freedom_(numbers, clusters) {
+  filling_ = scatter_ = Eigen::MatrixXd::Zero(numbers.rows(), numbers.rows());
 }
 
 void ClusterTally::Add(const Cluster& cluster) {
-  const Eigen::VectorXd inflated = InverseRootTimes(cluster.curvature, cluster.score);
-  filling_.selfadjointView<Eigen::Lower>().rankUpdate(inflated);
-  if (exact_) {
-    const Eigen::MatrixXd root = InverseRootTimes(cluster.curvature, *numbers_);
-    influence_.push_back(cluster.curvature * root);
-    const Eigen::MatrixXd& influence = influence_.back();
-    const Eigen::ArrayXd h = (root - influence).cwiseProduct(influence).colwise().sum().transpose();
-    h_ += h;
-    h2_ += h.square();
-    return;
-  }
-  Eigen::ArrayXd h(sparse_.cols());
-  for (Eigen::Index k = 0; k < sparse_.cols(); ++k) {
-    double sum = 0;
-    for (Eigen::SparseMatrix<double>::InnerIterator i(sparse_, k); i; ++i) {
-      for (Eigen::SparseMatrix<double>::InnerIterator j(sparse_, k); j; ++j)
-        sum += i.value() * cluster.curvature(i.row(), j.row()) * j.value();
-    }
-    h(k) = sum;
-  }
-  h_ += h;
-  h2_ += h.square();
-  const Eigen::ArrayXd length = numbers_->colwise().squaredNorm().transpose();
-  const Eigen::ArrayXd part = (h / length).min(1 - kAlone);
-  const Eigen::ArrayXd e = part.square() / (1 - part);
-  e_ += e;
-  e2_ += e.square();
+  filling_.selfadjointView<Eigen::Lower>().rankUpdate(InverseRootTimes(cluster.curvature, cluster.score));
+  scatter_ += cluster.scatter;
+  freedom_.Add(cluster);
 }
 
 void ClusterTally::Merge(const ClusterTally& other) {
   filling_ += other.filling_;
-  h_ += other.h_;
-  h2_ += other.h2_;
-  e_ += other.e_;
-  e2_ += other.e2_;
-  influence_.insert(influence_.end(), other.influence_.begin(), other.influence_.end());
-}
-
-Eigen::VectorXd ClusterTally::DegreesOfFreedom() const {
-  // The variance of a number is estimated as a quadratic form of the residuals whose matrix has the trace sum of h, and
-  // whose square the trace sum of h^2 and of the squared products of the influences of any two clusters.
-  Eigen::ArrayXd products = Eigen::ArrayXd::Zero(numbers_->cols());
-  if (exact_) {
-    for (std::size_t g = 0; g < influence_.size(); ++g) {
-      for (std::size_t k = 0; k < g; ++k)
-        products += 2 * influence_[g].cwiseProduct(influence_[k]).colwise().sum().transpose().array().square();
-    }
-  } else {
-    const Eigen::ArrayXd length = numbers_->colwise().squaredNorm().transpose();
-    products = (e_.square() - e2_) * length.square();
-  }
-  return h_.square() / (h2_ + products);
+  scatter_ += other.scatter_;
+  freedom_.Merge(other.freedom_);
 }
 
 }  // namespace lobefit

@@ -1,12 +1,12 @@
 // The sandwich's filling from clusters of samples that may depend on each other, with the correction for how far the
-// fit bends towards each cluster, and the degrees of freedom of what comes out.
+// fit bends towards each cluster.
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
+
+#include "lobefit/fit/inference/freedom.h"
 
 namespace lobefit {
 
@@ -14,10 +14,20 @@ namespace lobefit {
 // which is zero there.
 inline constexpr double kAlone = 1e-9;
 
+// From so many coordinates on the matrices of many channels, which meet in the few columns of the shape only, are mostly
+// zeros: their products with a vector took half of a fit with 800 channels.
+inline constexpr Eigen::Index kLeastSparse = 200;
+
 // Sums over the samples of one cluster, in whitened coordinates (bread.h).
 struct Cluster {
+  // Of no samples, with m coordinates and as many numbers.
+  Cluster(Eigen::Index m, Eigen::Index numbers);
+  void Add(const Cluster& other);
+
   Eigen::MatrixXd curvature;  // m x m: the cluster's part of the second derivatives, which add up to the unit matrix
   Eigen::VectorXd score;      // m: its part of the gradient
+  Eigen::MatrixXd scatter;  // m x m, lower half: sum of a a^T, what the solution moves by without a sample (sandwich.h)
+  Eigen::ArrayXd squares, fourths;  // a number z each (freedom.h): sums of (z^T a)^2 and of its square
 };
 
 // (1 - curvature)^(-1/2) times the columns of `vectors`. Directions that the cluster alone determines (curvature above
@@ -29,35 +39,24 @@ Eigen::MatrixXd InverseRootTimes(const Eigen::MatrixXd& curvature, const Eigen::
 Eigen::MatrixXd UnitColumns(const Eigen::MatrixXd& rows);
 
 // CR2 [Bell and McCaffrey 2002]: the filling is the sum of a a^T with a = (1 - curvature)^(-1/2) score, which has no
-// bias where residuals are independent and of one variance. For a number z^T a of the whitened coordinates the degrees
-// of freedom are those of the chi-square with the mean and variance that its estimated variance has there [Bell and
-// McCaffrey 2002, with the square of the trace over the trace of the square as in Imbens and Kolesar 2016]:
-// G - 1 for G equal clusters, fewer where few of them decide.
+// bias where residuals are independent and of one variance.
 class ClusterTally {
  public:
-  // `numbers`: m x numbers, z each; kept by reference. `clusters`: how many will be added.
+  // `numbers`: whose degrees of freedom are wanted; kept by reference. `clusters`: how many will be added.
   ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters);
 
   void Add(const Cluster& cluster);
   // Adds what another tally of the same fit has; the order is that of the clusters.
   void Merge(const ClusterTally& other);
 
+  // Lower halves.
   const Eigen::MatrixXd& filling() const { return filling_; }
-  // A number each; NaN where no cluster has a part in it. Up to 100 clusters exactly; of more, where it decides
-  // nothing, with each cluster's curvature taken as a multiple of the unit matrix.
-  Eigen::VectorXd DegreesOfFreedom() const;
+  const Eigen::MatrixXd& scatter() const { return scatter_; }
+  const FreedomTally& freedom() const { return freedom_; }
 
  private:
-  const Eigen::MatrixXd* numbers_;
-  bool exact_;
-  // Of `numbers`, without `exact_`: a number of one of many channels depends on the shape and its own channel only.
-  Eigen::SparseMatrix<double> sparse_;
-  Eigen::MatrixXd filling_;
-  // With h = z^T curvature z the cluster's share in the variance of a number, sums of h and h^2; and without `exact_`
-  // of e = h^2 / (1 - h) and e^2, with h as a part of z^T z.
-  Eigen::ArrayXd h_, h2_, e_, e2_;
-  // Curvature (1 - curvature)^(-1/2) z, cluster by cluster, for `exact_`.
-  std::vector<Eigen::MatrixXd> influence_;
+  Eigen::MatrixXd filling_, scatter_;
+  FreedomTally freedom_;
 };
 
 }  // namespace lobefit

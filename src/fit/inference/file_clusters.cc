@@ -67,7 +67,7 @@ FileErrors EstimateErrorsByFile(const Problem& problem, const Layout& layout, co
   const Eigen::MatrixXd numbers = UnitColumns(entries);
   const auto one_way = [&](const Incidences& groups) {
     const Filling filling = FillSandwich(problem, layout, u, bread, groups, numbers, pool);
-    return OneWay{(entries * filling.clusters).cwiseProduct(entries).rowwise().sum(), filling.freedom};
+    return OneWay{(entries * filling.clusters).cwiseProduct(entries).rowwise().sum(), filling.clusters_freedom};
   };
   OneWay total = one_way(by_file);
   if (both_count > incidences.wi.size()) {

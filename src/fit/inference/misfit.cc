@@ -136,7 +136,11 @@ Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<dou
   sums.hessian.setZero(n, n);
   sums.bin_rows.setZero(kBins, n);
   const Group empty = {{}, {}, Eigen::VectorXd::Zero(n)};
-  if (by_incidence) sums.groups.assign(incidences.wi.size(), empty);
+  if (by_incidence) {
+    sums.groups.assign(incidences.wi.size(), empty);
+  } else {
+    sums.groups.reserve(std::min(problem.size(), (problem.size() / (kPiece * stride) + 1) * kPiece));
+  }
   const std::vector<std::uint32_t> order = FileOrder(problem.size());
   RowEvaluator evaluator(problem.kernel_samples(), kernel);
   SampleRows piece;

@@ -132,6 +132,7 @@ std::vector<PseudoResidual> RepeatedPairs(const Samples& samples, const Incidenc
 
 struct Bin {
   double level, mean, deviation;
+  double log_deviation;
   double precision;  // of the deviation's logarithm, 1 / variance
 };
 
@@ -152,7 +153,8 @@ std::vector<Bin> Bins(std::vector<PseudoResidual> pairs) {
       mean += pairs[i].mean / members;
     }
     // The median of absolute values is 37 % efficient [Hampel 1974].
-    bins.push_back({std::sqrt(square), mean, RobustDeviation(&sizes), 2 * 0.37 * members});
+    const double deviation = RobustDeviation(&sizes);
+    bins.push_back({std::sqrt(square), mean, deviation, std::log(deviation), 2 * 0.37 * members});
   }
   return bins;
 }
@@ -166,7 +168,7 @@ BinMisfit MisfitOf(const std::vector<Bin>& bins, const NoiseModel& noise) {
   for (const Bin& bin : bins) {
     const double variance =
         noise.floor * noise.floor + noise.poisson * bin.mean + noise.relative * noise.relative * bin.level * bin.level;
-    const double gap = std::log(bin.deviation) - 0.5 * std::log(variance);
+    const double gap = bin.log_deviation - 0.5 * std::log(variance);
     const double rho = EvaluateLoss(Loss::kHuber, 0.3, gap * gap).rho;
     misfit.loss += rho;
     misfit.chi_squared += bin.precision * rho;
@@ -180,6 +182,7 @@ NoiseModel Descend(const std::vector<Bin>& bins, NoiseModel at) {
   for (double step = 0.5; step > 1e-3;) {
     bool moved = false;
     for (double NoiseModel::*term : {&NoiseModel::floor, &NoiseModel::relative, &NoiseModel::poisson}) {
+      if (at.*term == 0) continue;
       for (const double sign : {1.0, -1.0}) {
         NoiseModel tried = at;
         tried.*term *= std::exp(sign * step);

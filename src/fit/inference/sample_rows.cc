@@ -3,7 +3,22 @@
 #include <cmath>
 #include <numeric>
 
+#include "lobefit/fit/objective/kernel_arrays.h"
+
 namespace lobefit {
+
+Eigen::MatrixXd PieceTimes(const Eigen::Ref<const Eigen::MatrixXd>& rows, const RowMajorMatrix& matrix) {
+  // Eigen's products know no wider vectors than those that every machine has.
+  const Eigen::Index padded = (rows.rows() + 7) / 8 * 8;
+  Eigen::MatrixXd from(padded, rows.cols()), to(padded, matrix.cols());
+  from.topRows(rows.rows()) = rows;
+  from.bottomRows(padded - rows.rows()).setZero();
+  const auto stride = static_cast<std::size_t>(padded);
+  arrays::Contract(from.data(), matrix.data(), static_cast<std::size_t>(matrix.rows()),
+                   static_cast<std::size_t>(matrix.cols()), stride, stride, to.data());
+  to.conservativeResize(rows.rows(), Eigen::NoChange);
+  return to;
+}
 
 std::vector<std::uint32_t> FileOrder(std::size_t count) {
   std::vector<std::uint32_t> order(count);

@@ -25,6 +25,11 @@ struct SampleRows {
 // Samples of a piece for which the evaluator is quickest.
 inline constexpr std::size_t kPiece = 256;
 
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// rows * matrix, of the samples of a piece.
+Eigen::MatrixXd PieceTimes(const Eigen::Ref<const Eigen::MatrixXd>& rows, const RowMajorMatrix& matrix);
+
 // 0, 1, ..., count - 1.
 std::vector<std::uint32_t> FileOrder(std::size_t count);
 

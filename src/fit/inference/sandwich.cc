@@ -13,7 +13,6 @@
 namespace lobefit {
 namespace {
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
 
 // Bytes of the sums that are held at a time.
@@ -30,7 +29,7 @@ std::vector<std::uint32_t> IncidenceOrder(const Incidences& incidences) {
 
 // Rows of a piece in whitened coordinates.
 struct WhitenedRows {
-  std::vector<RowMajor> rows;  // [channel] samples x (border + own)
+  std::vector<RowMajorMatrix> rows;  // [channel] samples x (border + own)
   SampleRows samples;
 };
 
@@ -142,7 +141,6 @@ struct Run {
     std::uint32_t group = 0;
     Cluster cluster;
   };
-  Eigen::MatrixXd samples;
   std::optional<ClusterTally> tally;  // of the incidences between
   std::vector<Part> open;             // the first and, where it is another, the last
 };
@@ -156,29 +154,29 @@ class Filler {
         bread_(bread),
         incidences_(incidences),
         numbers_(numbers),
+        whiten_row_(bread.whiten_row.begin(), bread.whiten_row.end()),
         order_(IncidenceOrder(incidences)) {}
 
   Run Sum(std::size_t begin, std::size_t end) const {
     const Eigen::Index m = bread_.size();
     Run run;
-    run.samples.setZero(m, m);
     run.tally.emplace(numbers_, incidences_.wi.size());
     RowEvaluator evaluator(problem_.kernel_samples(), kernel_);
     LeaveOneOut leave_one_out(bread_);
     WhitenedRows piece;
     piece.rows.resize(problem_.channels());
     Eigen::MatrixXd moves;
-    Run::Part current = Empty(incidences_.group[order_[begin]]);
+    Run::Part current = {incidences_.group[order_[begin]], Cluster(m, numbers_.cols())};
     for (std::size_t first = begin; first < end; first += kPiece) {
       const std::size_t last = std::min(end, first + kPiece);
       evaluator.Evaluate(order_, first, last, &piece.samples);
       for (std::size_t c = 0; c < piece.rows.size(); ++c)
-        piece.rows[c].noalias() = piece.samples.rows[c] * bread_.whiten_row[c];
+        piece.rows[c] = PieceTimes(piece.samples.rows[c], whiten_row_[c]);
       if (!bread_.lean.empty()) TakeOutGains(first, &piece);
       const auto count = static_cast<Eigen::Index>(last - first);
       moves.resize(m, count);
       for (Eigen::Index i = 0; i < count; ++i) leave_one_out.Evaluate(piece, i, moves.col(i).data());
-      run.samples.selfadjointView<Eigen::Lower>().rankUpdate(moves);
+      const Eigen::ArrayXXd squares = run.tally->freedom().Squares(moves);
       for (Eigen::Index i = 0; i < count;) {
         const std::uint32_t group = incidences_.group[order_[first + static_cast<std::size_t>(i)]];
         Eigen::Index j = i + 1;
@@ -188,6 +186,9 @@ class Filler {
           current.group = group;
         }
         AddRows(piece, i, j, bread_, &current.cluster);
+        current.cluster.scatter.selfadjointView<Eigen::Lower>().rankUpdate(moves.middleCols(i, j - i));
+        current.cluster.squares += squares.middleRows(i, j - i).colwise().sum().transpose();
+        current.cluster.fourths += squares.middleRows(i, j - i).square().colwise().sum().transpose();
         i = j;
       }
     }
@@ -218,10 +219,6 @@ class Filler {
     }
   }
 
-  Run::Part Empty(std::uint32_t group) const {
-    const Eigen::Index m = bread_.size();
-    return {group, {Eigen::MatrixXd::Zero(m, m), Eigen::VectorXd::Zero(m)}};
-  }
   // Ends an incidence within a run.
   void Close(Run::Part* part, Run* run) const {
     if (run->open.empty()) {
@@ -229,8 +226,7 @@ class Filler {
     } else {
       run->tally->Add(Whole(*part));
     }
-    part->cluster.curvature.setZero();
-    part->cluster.score.setZero();
+    part->cluster = Cluster(bread_.size(), numbers_.cols());
   }
 
   const Problem& problem_;
@@ -238,11 +234,24 @@ class Filler {
   const Bread& bread_;
   const Incidences& incidences_;
   const Eigen::MatrixXd& numbers_;
+  const std::vector<RowMajorMatrix> whiten_row_;
   const std::vector<std::uint32_t> order_;
 };
 
 Eigen::MatrixXd Symmetric(const Eigen::MatrixXd& lower) {
   return Eigen::MatrixXd(lower.selfadjointView<Eigen::Lower>());
+}
+
+// Adds the variance that a prior gives: known, not estimated from samples or clusters.
+void AddKnown(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& numbers, Eigen::MatrixXd* filling,
+              Eigen::VectorXd* freedom) {
+  if (prior.isZero(0)) return;
+  for (Eigen::Index k = 0; k < numbers.cols(); ++k) {
+    const double known = numbers.col(k).dot(prior * numbers.col(k));
+    const double estimated = numbers.col(k).dot(*filling * numbers.col(k));
+    if (known > 0 && estimated > 0) (*freedom)(k) *= (1 + known / estimated) * (1 + known / estimated);
+  }
+  *filling += prior;
 }
 
 }  // namespace
@@ -253,7 +262,6 @@ Filling FillSandwich(const Problem& problem, const Layout& layout, const std::ve
   const std::size_t runs = RunCount(problem.size());
   const auto m = static_cast<double>(bread.size());
   const auto at_a_time = static_cast<std::size_t>(std::clamp(kMostBytes / (32 * m * m + 1), 2.0, 64.0));
-  Eigen::MatrixXd samples = Eigen::MatrixXd::Zero(bread.size(), bread.size());
   ClusterTally tally(numbers, incidences.wi.size());
   std::optional<Run::Part> open;
   for (std::size_t first = 0; first < runs; first += at_a_time) {
@@ -262,11 +270,9 @@ Filling FillSandwich(const Problem& problem, const Layout& layout, const std::ve
       sums[k] = filler.Sum(RunBegin(problem.size(), first + k), RunBegin(problem.size(), first + k + 1));
     });
     for (Run& run : sums) {
-      samples += run.samples;
       for (Run::Part& part : run.open) {
         if (open && open->group == part.group) {
-          open->cluster.curvature += part.cluster.curvature;
-          open->cluster.score += part.cluster.score;
+          open->cluster.Add(part.cluster);
         } else {
           if (open) tally.Add(filler.Whole(*open));
           open = std::move(part);
@@ -276,16 +282,10 @@ Filling FillSandwich(const Problem& problem, const Layout& layout, const std::ve
     }
   }
   if (open) tally.Add(filler.Whole(*open));
-  Filling filling = {Symmetric(samples) + bread.prior_of_gains + bread.prior_of_coordinates, Symmetric(tally.filling()),
-                     tally.DegreesOfFreedom()};
-  // The variance that a prior gives is known, not estimated from clusters.
-  const Eigen::Index with_prior = bread.prior_of_coordinates.isZero(0) ? 0 : numbers.cols();
-  for (Eigen::Index k = 0; k < with_prior; ++k) {
-    const double known = numbers.col(k).dot(bread.prior_of_coordinates * numbers.col(k));
-    const double estimated = numbers.col(k).dot(filling.clusters * numbers.col(k));
-    if (known > 0 && estimated > 0) filling.freedom(k) *= (1 + known / estimated) * (1 + known / estimated);
-  }
-  filling.clusters += bread.prior_of_coordinates;
+  Filling filling = {Symmetric(tally.scatter()), tally.freedom().OfSamples(), Symmetric(tally.filling()),
+                     tally.freedom().OfClusters(tally.scatter())};
+  AddKnown(bread.prior_of_gains + bread.prior_of_coordinates, numbers, &filling.samples, &filling.samples_freedom);
+  AddKnown(bread.prior_of_coordinates, numbers, &filling.clusters, &filling.clusters_freedom);
   return filling;
 }
 

@@ -20,8 +20,9 @@ struct Filling {
   // With the power -1/2 (HC2) alpha_x of a metal with few samples in its highlight was covered in 93.3 % instead of
   // 93.5 % of 1000 trials.
   Eigen::MatrixXd samples;
-  Eigen::MatrixXd clusters;  // CR2 over incidences, clusters.h
-  Eigen::VectorXd freedom;   // of `clusters`, for each of the numbers
+  Eigen::VectorXd samples_freedom;   // of `samples`, for each of the numbers: freedom.h
+  Eigen::MatrixXd clusters;          // CR2 over incidences, clusters.h
+  Eigen::VectorXd clusters_freedom;  // of `clusters`, likewise
 };
 
 // `numbers`: m x numbers, whose degrees of freedom are wanted. Samples are taken incidence by incidence, so that only

@@ -75,8 +75,8 @@ Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, co
   }
   const bool scatter_estimated = problem.gains() != nullptr && !layout.recipe().instrument.drift->sd;
   for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
-    result.freedom.push_back(result.has_clusters ? filling.freedom(row) : kNan);
-    result.independent_freedom.push_back(INFINITY);
+    result.freedom.push_back(result.has_clusters ? filling.clusters_freedom(row) : kNan);
+    result.independent_freedom.push_back(filling.samples_freedom(row));
     if (!scatter_estimated) continue;
     const double variance = entries.row(row) * filling.samples * entries.row(row).transpose();
     if (!(variance > 0)) continue;

@@ -20,8 +20,8 @@ namespace lobefit {
 // (the angles of equal alphas); 0 for what is fixed or held at a bound.
 struct Uncertainty {
   // Samples taken as independent, of noise that may differ from sample to sample. 95 % within the quantile of Student's
-  // t with `independent_freedom` degrees of freedom: infinite, so that errors are normal, unless a variance comes from
-  // the scatter of a few gains, which was estimated.
+  // t with `independent_freedom` degrees of freedom (freedom.h), which the scatter of a few gains lessens where it
+  // was estimated.
   Eigen::MatrixXd covariance;
   std::vector<double> independent_freedom;  // [entry]
   // Samples of one incident direction may depend on each other. 95 % within the quantile of Student's t with `freedom`

@@ -64,17 +64,29 @@ void CurveBasisArrays(const double* cos_d, std::size_t n, std::size_t stride, do
   }
 }
 
+// The columns of ContractArrays from k on, so many at a time: a sum waits four cycles for its last product.
+template <std::size_t kColumns>
+HWY_INLINE void ContractTile(const double* from, const double* jacobian, std::size_t rows, std::size_t columns,
+                             std::size_t k, std::size_t n, std::size_t stride, double* to) {
+  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
+    V64 sums[kColumns];
+    for (std::size_t q = 0; q < kColumns; ++q) sums[q] = hn::Zero(D64());
+    for (std::size_t j = 0; j < rows; ++j) {
+      const V64 x = Load(from + j * stride + i);
+      for (std::size_t q = 0; q < kColumns; ++q)
+        sums[q] = hn::MulAdd(Constant(jacobian[j * columns + k + q]), x, sums[q]);
+    }
+    for (std::size_t q = 0; q < kColumns; ++q) hn::StoreU(sums[q], D64(), to + (k + q) * stride + i);
+  }
+}
+
 // to[k] = sum_j jacobian[j][k] from[j], j < rows, k < columns, arrays of n with the given strides.
 void ContractArrays(const double* from, const double* jacobian, std::size_t rows, std::size_t columns, std::size_t n,
                     std::size_t stride, double* to) {
-  for (std::size_t k = 0; k < columns; ++k) {
-    for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
-      V64 sum = hn::Zero(D64());
-      for (std::size_t j = 0; j < rows; ++j)
-        sum = hn::MulAdd(Constant(jacobian[j * columns + k]), Load(from + j * stride + i), sum);
-      hn::StoreU(sum, D64(), to + k * stride + i);
-    }
-  }
+  constexpr std::size_t kTile = 4;
+  std::size_t k = 0;
+  for (; k + kTile <= columns; k += kTile) ContractTile<kTile>(from, jacobian, rows, columns, k, n, stride, to);
+  for (; k < columns; ++k) ContractTile<1>(from, jacobian, rows, columns, k, n, stride, to);
 }
 
 // to += a * (constant + slope * array).

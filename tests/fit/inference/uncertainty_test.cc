@@ -54,7 +54,8 @@ Matrix Power(const Matrix& symmetric, double power) {
 // The covariances of the solver's coordinates by the textbook, every matrix of all residuals written out.
 struct Textbook {
   Matrix hc3, cr2;
-  Vector freedom;  // of each row of `numbers`; without a loss
+  Vector hc3_freedom;  // of each row of `numbers`
+  Vector freedom;      // of `cr2`, likewise
 };
 
 Textbook EvaluateTextbook(const Recipe& recipe, const Layout& layout, const Samples& samples,
@@ -98,16 +99,22 @@ Textbook EvaluateTextbook(const Recipe& recipe, const Layout& layout, const Samp
     a += part[s];
   }
   Textbook textbook;
-  textbook.hc3.setZero(kSize, kSize);
   textbook.cr2.setZero(kSize, kSize);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Vector move = (a - part[static_cast<std::size_t>(i)]).fullPivLu().solve(score.row(i).transpose());
-    textbook.hc3 += move * move.transpose();
-  }
+  Matrix moves(kSize, count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    moves.col(i) = (a - part[static_cast<std::size_t>(i)]).fullPivLu().solve(score.row(i).transpose());
+  textbook.hc3 = moves * moves.transpose();
+  const Matrix squares = (numbers * moves).cwiseAbs2();
+  textbook.hc3_freedom = 3 * squares.rowwise().sum().array().square() / squares.cwiseAbs2().rowwise().sum().array();
   const Matrix inverse = a.inverse(), root = Power(a, -0.5);
   const Matrix hat = j * inverse * j.transpose(), residual_maker = Matrix::Identity(3 * count, 3 * count) - hat;
+  // Each sample's residuals as noise: those of a fit without it.
+  Matrix noise = Matrix::Zero(3 * count, count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    noise.block(3 * i, i, 3, 1) = residual_maker.block(3 * i, 3 * i, 3, 3).fullPivLu().solve(r.segment(3 * i, 3));
   const auto groups = static_cast<Eigen::Index>(incidences.wi.size());
-  std::vector<Matrix> columns(static_cast<std::size_t>(numbers.rows()), Matrix::Zero(3 * count, groups));
+  // What each sample's noise gives to the part of a cluster in a number.
+  std::vector<Matrix> parts(static_cast<std::size_t>(numbers.rows()), Matrix::Zero(groups, count));
   for (Eigen::Index g = 0; g < groups; ++g) {
     std::vector<Eigen::Index> rows;
     Matrix curvature = Matrix::Zero(kSize, kSize);
@@ -125,19 +132,40 @@ Textbook EvaluateTextbook(const Recipe& recipe, const Layout& layout, const Samp
       const Matrix adjust = Power(residual_maker(rows, rows), -0.5);
       move = inverse * x.transpose() * adjust * r(rows);
       for (Eigen::Index k = 0; k < numbers.rows(); ++k) {
-        columns[static_cast<std::size_t>(k)].col(g) =
+        const Vector of_residuals =
             residual_maker(Eigen::all, rows) * adjust * x * inverse * numbers.row(k).transpose();
+        parts[static_cast<std::size_t>(k)].row(g) = of_residuals.transpose() * noise;
       }
     } else {
-      move = root * Power(Matrix::Identity(kSize, kSize) - root * curvature * root, -0.5) * root * sum;
+      const Matrix whitened = root * curvature * root;
+      const Matrix inflate = Power(Matrix::Identity(kSize, kSize) - whitened, -0.5);
+      move = root * inflate * root * sum;
+      for (Eigen::Index k = 0; k < numbers.rows(); ++k) {
+        const Vector y = inflate * root * numbers.row(k).transpose();
+        for (Eigen::Index i = 0; i < count; ++i) {
+          const bool own = incidences.group[static_cast<std::size_t>(i)] == g;
+          const Vector influence = (own ? y : Vector::Zero(kSize)) - whitened * y;
+          parts[static_cast<std::size_t>(k)](g, i) = influence.dot(root.inverse() * moves.col(i));
+        }
+      }
     }
     textbook.cr2 += move * move.transpose();
   }
   textbook.freedom.resize(numbers.rows());
   for (Eigen::Index k = 0; k < numbers.rows(); ++k) {
-    const Matrix& g = columns[static_cast<std::size_t>(k)];
-    const Matrix gg = g.transpose() * g;
-    textbook.freedom(k) = gg.trace() * gg.trace() / (gg * gg).trace();
+    const Matrix& of_number = parts[static_cast<std::size_t>(k)];
+    const Matrix covariance = of_number * of_number.transpose();
+    double square = covariance.squaredNorm();
+    for (Eigen::Index g = 0; g < groups; ++g) {
+      double sum = 0, fourths = 0;
+      for (Eigen::Index i = 0; i < count; ++i) {
+        if (incidences.group[static_cast<std::size_t>(i)] != g) continue;
+        sum += squares(k, i);
+        fourths += squares(k, i) * squares(k, i);
+      }
+      square -= 2 * fourths / 3 * std::pow(covariance(g, g) / sum, 2);
+    }
+    textbook.freedom(k) = std::min(covariance.trace() * covariance.trace() / square, static_cast<double>(groups));
   }
   return textbook;
 }
@@ -191,13 +219,10 @@ TEST_P(EveryResidual, ErrorsAreTheTextbooks) {
       EXPECT_NEAR(got.covariance(i, k), hc3(i, k), 1e-10 * std::sqrt(hc3(i, i) * hc3(k, k))) << i << ' ' << k;
       EXPECT_NEAR(got.clustered(i, k), cr2(i, k), 1e-10 * std::sqrt(cr2(i, i) * cr2(k, k))) << i << ' ' << k;
     }
+    const double independent = got.independent_freedom[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(independent, expected.hc3_freedom(i), 1e-8 * independent) << i;
     const double freedom = got.freedom[static_cast<std::size_t>(i)];
-    if (loss == Loss::kNone) {
-      EXPECT_NEAR(freedom, expected.freedom(i), 1e-8 * freedom) << i;
-    } else {
-      EXPECT_GT(freedom, 0.5) << i;
-      EXPECT_LT(freedom, 5) << i;
-    }
+    EXPECT_NEAR(freedom, expected.freedom(i), 1e-8 * freedom) << i;
   }
 }
 

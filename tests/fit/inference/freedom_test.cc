@@ -1,0 +1,132 @@
+#include "lobefit/fit/inference/freedom.h"
+
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "lobefit/fit/inference/clusters.h"
+
+namespace lobefit {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+// A cluster of so many samples that its scatter is known, with noise of the given variance.
+Cluster Known(const Matrix& curvature, const Matrix& numbers, double variance = 1) {
+  Cluster cluster(curvature.rows(), numbers.cols());
+  cluster.curvature = curvature;
+  cluster.scatter = variance * curvature;
+  cluster.squares = (numbers.transpose() * cluster.scatter * numbers).diagonal().array();
+  return cluster;
+}
+
+Eigen::VectorXd FreedomOf(const ClusterTally& tally) { return tally.freedom().OfClusters(tally.scatter()); }
+
+// G clusters that are all alike: G - 1 degrees of freedom, by the exact formula and by the one for many.
+TEST(FreedomOfClusters, IsOneLessThanTheNumberOfEqualOnes) {
+  const Matrix numbers = Matrix::Identity(4, 4);
+  for (const std::size_t clusters : {2U, 3U, 8U, 36U, 100U, 101U, 5000U}) {
+    const auto g = static_cast<double>(clusters);
+    ClusterTally tally(numbers, clusters);
+    Cluster cluster = Known(Matrix::Identity(4, 4) / g, numbers, 7);
+    cluster.score.setOnes();
+    for (std::size_t k = 0; k < clusters; ++k) tally.Add(cluster);
+    for (const double freedom : FreedomOf(tally)) EXPECT_NEAR(freedom, g - 1, 1e-9 * g) << clusters;
+    EXPECT_NEAR(tally.filling()(3, 0), g / (1 - 1 / g), 1e-9 * g);
+  }
+}
+
+// Of clusters with a share in the curvature each, of any noise: the trace of the covariance of their parts, squared,
+// over that of its square, with the covariance from the residual maker 1 - shares.
+TEST(FreedomOfClusters, FollowsTheCovarianceOfTheirParts) {
+  const Matrix numbers = Matrix::Identity(1, 1);
+  const Eigen::Vector4d share(0.1, 0.2, 0.3, 0.4), variance(1, 8, 0.5, 2);
+  ClusterTally tally(numbers, 4);
+  for (int g = 0; g < 4; ++g) tally.Add(Known(Matrix::Constant(1, 1, share(g)), numbers, variance(g)));
+  Matrix parts(4, 4);  // of the scores
+  for (int g = 0; g < 4; ++g) {
+    for (int k = 0; k < 4; ++k) parts(g, k) = ((g == k ? 1 : 0) - share(g)) / std::sqrt(1 - share(g));
+  }
+  const Matrix covariance = parts * share.cwiseProduct(variance).asDiagonal() * parts.transpose();
+  const double trace = covariance.trace();
+  EXPECT_NEAR(FreedomOf(tally)(0), trace * trace / covariance.squaredNorm(), 1e-12);
+}
+
+// Of many clusters, by the definition (freedom.h), for numbers of two coordinates of three.
+TEST(FreedomOfClusters, OfManyFollowsTheDefinition) {
+  constexpr std::size_t kClusters = 101;
+  Matrix numbers(3, 2);
+  numbers << 0.6, 0, 0, 0.28, -0.8, 0.96;
+  ClusterTally tally(numbers, kClusters);
+  Eigen::ArrayXXd h(kClusters, 2), v(kClusters, 2), fourth(kClusters, 2);
+  for (std::size_t k = 0; k < kClusters; ++k) {
+    const auto x = static_cast<double>(k);
+    const auto row = static_cast<Eigen::Index>(k);
+    Matrix curvature = Matrix::Identity(3, 3) * (0.01 + 0.005 * std::sin(x));
+    curvature(0, 2) = curvature(2, 0) = 0.004 * std::cos(x);
+    curvature(1, 2) = curvature(2, 1) = -0.003 * std::cos(2 * x);
+    Cluster cluster = Known(curvature, numbers, 1 + 0.9 * std::sin(5 * x));
+    cluster.fourths = 0.3 * cluster.squares.square();
+    tally.Add(cluster);
+    h.row(row) = (numbers.transpose() * curvature * numbers).diagonal().array();
+    v.row(row) = cluster.squares;
+    fourth.row(row) = cluster.fourths;
+  }
+  for (Eigen::Index n = 0; n < 2; ++n) {
+    const Eigen::ArrayXd e = h.col(n).square() / (1 - h.col(n));
+    const double products = (e.sum() * e.sum() - e.square().sum()) * std::pow(v.col(n).sum() / h.col(n).sum(), 2);
+    const double square = (v.col(n).square() - fourth.col(n) * 2 / 3).sum() + products;
+    EXPECT_NEAR(FreedomOf(tally)(n), std::pow(v.col(n).sum(), 2) / square, 1e-10) << n;
+  }
+}
+
+// One of ten clusters has nearly all the say: fewer than one degree of freedom is left over from it.
+TEST(FreedomOfClusters, FallsWhereFewDecide) {
+  const Matrix numbers = Matrix::Identity(1, 1);
+  ClusterTally tally(numbers, 10);
+  tally.Add(Known(Matrix::Constant(1, 1, 0.91), numbers));
+  for (int k = 0; k < 9; ++k) tally.Add(Known(Matrix::Constant(1, 1, 0.01), numbers));
+  EXPECT_LT(FreedomOf(tally)(0), 1.25);
+  EXPECT_GT(FreedomOf(tally)(0), 1);
+}
+
+// As many clusters with as much curvature, of which three are noisy.
+TEST(FreedomOfClusters, FallsWhereFewAreNoisy) {
+  const Matrix numbers = Matrix::Identity(1, 1);
+  for (const std::size_t clusters : {90U, 300U}) {
+    ClusterTally tally(numbers, clusters);
+    const Matrix curvature = Matrix::Constant(1, 1, 1 / static_cast<double>(clusters));
+    for (std::size_t k = 0; k < clusters; ++k) tally.Add(Known(curvature, numbers, k < 3 ? 1e4 : 1));
+    EXPECT_NEAR(FreedomOf(tally)(0), 3, 0.2) << clusters;
+  }
+}
+
+TEST(FreedomOfClusters, IsNoneWhereNoneHasAPartAndAnyWithoutNoise) {
+  const Matrix none = Matrix::Zero(2, 1), number = Matrix::Identity(2, 1);
+  ClusterTally without_part(none, 2), without_noise(number, 2);
+  for (int k = 0; k < 2; ++k) {
+    without_part.Add(Known(Matrix::Identity(2, 2) / 2, none));
+    without_noise.Add(Known(Matrix::Identity(2, 2) / 2, number, 0));
+  }
+  EXPECT_TRUE(std::isnan(FreedomOf(without_part)(0)));
+  EXPECT_EQ(FreedomOf(without_noise)(0), INFINITY);
+}
+
+// N alike samples have N; of one that has all the say there is one, and none that counts has infinitely many.
+TEST(FreedomOfSamples, IsTheNumberOfThoseThatDecide) {
+  const Matrix number = Matrix::Identity(1, 1);
+  for (const int decide : {1, 30}) {
+    FreedomTally tally(number, 1);
+    Cluster cluster(1, 1);
+    // Normal residuals in the mean: w^2 is three times the square of its mean.
+    cluster.squares(0) = decide;
+    cluster.fourths(0) = 3 * decide;
+    tally.Add(cluster);
+    EXPECT_NEAR(tally.OfSamples()(0), decide, 1e-12 * decide);
+  }
+  EXPECT_EQ(FreedomTally(number, 1).OfSamples()(0), INFINITY);
+}
+
+}  // namespace
+}  // namespace lobefit
