@@ -43,6 +43,18 @@ TEST(Targets, SayWhatTheyCarry) {
   EXPECT_EQ(Fate("merl", test::Plastic(), Feature::kShape), "approximately");
 }
 
+// What the stated error leaves out: it is that of the compensation by the albedo itself.
+TEST(Targets, SayWhatMaterialXOwnShadersFit) {
+  const FittedBrdf fit(test::MaterialOf(test::Plastic()));
+  for (const char* name : {"materialx", "openpbr"}) {
+    std::string note;
+    for (const Carried& row : FindTarget(name).carries(fit)) {
+      if (row.feature == Feature::kMasking) note = row.note;
+    }
+    EXPECT_THAT(note, HasSubstr("MaterialX' own shaders take from a fit of the albedo")) << name;
+  }
+}
+
 TEST(Targets, OtherDistributionsAndFresnelTermsAreNotSilent) {
   SyntheticCase beckmann = test::Turned();
   beckmann.model.lobes[0].ndf = Ndf::kBeckmannAnisotropic;

@@ -127,7 +127,11 @@ TEST_F(ExportVerb, LoadLinesAndMapPath) {
   EXPECT_THAT(xml, HasSubstr("value=\"maps/blue-acrylic_normal1.png\""));
   EXPECT_THAT(xml, HasSubstr("needs Mitsuba 3.7.1"));
   EXPECT_THAT(xml, HasSubstr("spectral ones clamp eta and k to 1"));
-  EXPECT_THAT(ReadWholeFile(folder_ / "blue-acrylic.mitsuba.py"), HasSubstr("version >= (3, 7, 1)"));
+  const std::string python = ReadWholeFile(folder_ / "blue-acrylic.mitsuba.py");
+  EXPECT_THAT(python, HasSubstr("version >= (3, 7, 1)"));
+  // Where the XML's map lies; that of the Python file lies in its own folder.
+  EXPECT_THAT(xml, HasSubstr("beside the main scene file"));
+  EXPECT_THAT(python, testing::Not(HasSubstr("beside the main scene file")));
   EXPECT_THAT(ReadWholeFile(folder_ / "blue-acrylic.pbrt"), HasSubstr("\"maps/blue-acrylic_normal1.png\""));
 }
 

@@ -1,6 +1,8 @@
-// MaterialX' own library (the WASM build of an npm package) on documents: validates each, generates its GLSL ES shader.
+// MaterialX' own library (the WASM build of an npm package) on documents: validates each, generates its GLSL ES shaders
+// under one directional light. An environment is 0 unless its uniforms are set.
 //   node materialx.mjs PACKAGE_FOLDER OUT_FOLDER FILE...
-// One line a file: its name, "valid" or "invalid", the name of the surface; OUT_FOLDER/NAME.frag is the pixel shader.
+// One line a file: its name, "valid" or "invalid", the name of the surface. OUT_FOLDER/NAME.vert and .frag are the shaders,
+// NAME.uniforms has the document's numbers, a line each: type, name, value.
 import fs from 'node:fs';
 import path from 'node:path';
 import { createRequire } from 'node:module';
@@ -21,6 +23,18 @@ const mx = await load({
 const generator = mx.EsslShaderGenerator.create();
 const context = new mx.GenContext(generator);
 const library = mx.loadStandardLibraries(context);
+const options = context.getOptions();
+// The library cannot do without one here: transmission asks for a uniform that only environments bring.
+options.hwSpecularEnvironmentMethod = mx.HwSpecularEnvironmentMethod.SPECULAR_ENVIRONMENT_PREFILTER;
+mx.HwShaderGenerator.bindLightShader(library.getNodeDef('ND_directional_light'), 1, context);
+// GLSL ES has no values of uniforms.
+const valuesOf = (shader) => {
+  const block = shader.getStage('pixel').getUniformBlocks().PublicUniforms;
+  return Array.from({ length: block.size() }, (_, k) => block.get(k))
+    .filter((port) => port.getValue() !== null)
+    .map((port) => `${port.getType().getName()} ${port.getVariable()} ${port.getValue().getValueString().replaceAll(',', ' ')}\n`)
+    .join('');
+};
 console.log(`MaterialX ${mx.getVersionString()}`);
 for (const file of files) {
   const document = mx.createDocument();
@@ -29,6 +43,11 @@ for (const file of files) {
   const valid = document.validate();
   const surface = mx.findRenderableElement(document);
   const shader = generator.generate(surface.getNamePath(), surface, context);
-  fs.writeFileSync(path.join(out, `${path.basename(file)}.frag`), shader.getSourceCode('pixel'));
+  const stem = path.join(out, path.basename(file));
+  for (const [stage, ending] of [['vertex', 'vert'], ['pixel', 'frag']]) {
+    // Half floats, which Mesa takes for mediump, cannot hold the library's small numbers.
+    fs.writeFileSync(`${stem}.${ending}`, shader.getSourceCode(stage).replaceAll('mediump', 'highp'));
+  }
+  fs.writeFileSync(`${stem}.uniforms`, valuesOf(shader));
   console.log(`${path.basename(file)} ${valid ? 'valid' : 'invalid'} ${surface.getNamePath()}`);
 }

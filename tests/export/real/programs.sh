@@ -33,6 +33,10 @@ compile_pbrt() {
     -lOpenEXR -lIex -lIlmThread -lImath -lz -lGL -lX11 -ldl -lpthread ${LDFLAGS:-}
 }
 
+compile_powitacq() { ${CXX:-g++} -O2 -std=c++17 -I"$1" "$here/powitacq.cc" -o "$work/powitacq"; }
+
+compile_gles() { ${CXX:-g++} -O1 -std=c++17 "$here/gles.cc" -o "$work/gles" -lEGL -lGLESv2 2>/dev/null; }
+
 # Its loader alone, which needs Qt's headers.
 compile_brdf_explorer() {
   local sources=$1/src/brdf

@@ -6,11 +6,15 @@
 
 namespace lobefit {
 
-inline constexpr const char* kMaterialXMasking = "height-correlated Smith of the mean width, with energy compensation";
+inline constexpr const char* kMaterialXMasking =
+    "height-correlated Smith of the mean width, with energy compensation, which MaterialX' own shaders take from a fit "
+    "of "
+    "the albedo, some percent off at grazing";
 
 Target MaterialXTarget();
 
-// Evaluated as MaterialX' own GLSL does: height-correlated masking of the mean width, energy compensation.
+// Evaluated as MaterialX' own GLSL does, height-correlated masking of the mean width and energy compensation, but by the
+// lobe's albedo itself where that has a fit of it.
 Surface MaterialXSurface(const FittedBrdf& fit);
 
 }  // namespace lobefit

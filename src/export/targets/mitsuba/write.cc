@@ -37,6 +37,11 @@ bool IsClampedInSpectralVariants(const FittedBrdf& fit, const Surface& surface) 
          });
 }
 
+// Of the XML; the Python file names its map by its own folder.
+std::string MapNote(const std::vector<std::string>& maps) {
+  return MapComment(maps, "the main scene file, also where this file is included from another folder");
+}
+
 // What the user has to know beside loading the file.
 std::vector<std::string> Notes(const FittedBrdf& fit, const Surface& surface, const std::vector<std::string>& maps,
                                bool old_mitsuba) {
@@ -48,7 +53,7 @@ std::vector<std::string> Notes(const FittedBrdf& fit, const Surface& surface, co
                     : "The XML needs Mitsuba 3.7.1 or newer; --mitsuba-version 3.7.0 of the export writes it for "
                       "3.0 to 3.7.0, which refuse use_shadowing_function. The Python file asks for the version "
                       "itself.");
-    notes.push_back(MapComment(maps, "the main scene file, also where this file is included from another folder"));
+    notes.push_back(MapNote(maps));
   }
   if (IsClampedInSpectralVariants(fit, surface)) {
     notes.emplace_back(
@@ -105,6 +110,7 @@ WrittenFiles WriteMitsuba(const FittedBrdf& fit, const WriteContext& context) {
   xml.insert(5, fmt::format(" id=\"{}\"", Identifier(context.name)));
   const std::filesystem::path path = context.File(".mitsuba.xml"), python = context.File(".mitsuba.py");
   WriteFileAtomically(path, XmlComment(header) + "<scene version=\"3.0.0\">\n" + Indented(xml, "  ") + "\n</scene>\n");
+  if (!maps.empty()) std::erase(header, MapNote(maps));
   WriteFileAtomically(python, PythonText(header, whole.python, !wavelengths.empty()));
   written.files.insert(written.files.begin(), {path, python});
   const FileBytes bytes(path);
