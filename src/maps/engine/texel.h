@@ -72,10 +72,10 @@ class TexelFitter {
   TexelFitter(const MapRules& rules, const LightPaths& paths, int channels);
   // Moves lights and cameras, as many as before: of the texel that is fitted next.
   void Move(const LightPaths& paths) { lights_.Set(paths, rules_.schlick); }
-  // values[channel stride + light]: f_r cos_theta_i; NaN: none, infinite: saturated. `point`, `model`: where the search
-  // ended, unless null.
-  TexelFit Fit(const float* values, std::size_t stride, const HeldNumbers& held = {}, MapPoint* point = nullptr,
-               MapModel* model = nullptr);
+  // values[channel stride + light]: f_r cos_theta_i; NaN: none, infinite: saturated. `end`, `end_model`: where the
+  // search ended, unless null.
+  TexelFit Fit(const float* values, std::size_t stride, const HeldNumbers& held = {}, MapPoint* end = nullptr,
+               MapModel* end_model = nullptr);
   // At the point of the last Fit: by the unknowns that were held and are `shared` with other texels, along the texel's
   // valley (all else follows), the texel's level of noise profiled; amplitudes in the stack's unit, as HeldNumbers has
   // them. False where that texel says nothing.
