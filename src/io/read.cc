@@ -119,15 +119,18 @@ void RequireLines(const InputFile& file) {
   if (file.bytes.size() <= kMostLine || head.empty() || head.front() == '<' || head.front() == '{' ||
       head.front() == '[' || head.find('\0') != std::string_view::npos)
     return;
-  std::size_t line = 1;
-  for (std::size_t begin = 0; begin < file.bytes.size(); ++line) {
-    const std::size_t end = std::min(file.bytes.find('\n', begin), file.bytes.size());
-    if (end - begin > kMostLine) {
+  // From the last line that ends within the limit to the next: lines in between are shorter and not looked at.
+  for (std::size_t begin = 0; file.bytes.size() - begin > kMostLine;) {
+    const std::size_t last = file.bytes.substr(begin, kMostLine + 1).rfind('\n');
+    if (last == std::string_view::npos) {
+      const auto line =
+          1 + std::count(file.bytes.begin(), file.bytes.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
+      const std::size_t end = std::min(file.bytes.find('\n', begin), file.bytes.size());
       throw InputError(file.path.string() + ": line " + std::to_string(line) + ": has " + std::to_string(end - begin) +
                        " bytes; at most " + std::to_string(kMostLine) +
                        " are read: is it text with the ends of its lines lost, or another kind of file?");
     }
-    begin = end + 1;
+    begin += last + 1;
   }
 }
 

@@ -1,5 +1,7 @@
 #include "lobefit/measurement/measurement.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -32,9 +34,11 @@ void Samples::Resize(std::size_t count) {
 }
 
 void Samples::Keep(const std::vector<std::uint8_t>& keep) {
+  // What stands before the first that goes stays where it is.
+  const auto first = static_cast<std::size_t>(std::find(keep.begin(), keep.end(), 0) - keep.begin());
   ForEachArray(*this, [&](auto& array) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < array.size(); ++i) {
+    std::size_t kept = first;
+    for (std::size_t i = first; i < array.size(); ++i) {
       if (keep[i] != 0) array[kept++] = array[i];
     }
     array.resize(kept);
@@ -99,17 +103,22 @@ bool MeasurementBuilder::Add(const Vec3& wi, const Vec3& wo, const double* value
 }
 
 Measurement MeasurementBuilder::Finish() {
-  constexpr std::size_t kAhead = 12;  // as many look-ups as memory answers in the time of one
+  constexpr std::size_t kAhead = 16;  // as many look-ups as memory answers in the time of one
   Samples& samples = measurement_.samples;
   PairIndex seen(samples.size());
+  std::array<PairIndex::Pair, kAhead> ahead;
+  const auto prepare = [&](std::size_t i) {
+    if (i < samples.size()) ahead[i % kAhead] = seen.Prepare(samples.wi(i), samples.wo(i));
+  };
+  for (std::size_t i = 0; i < kAhead; ++i) prepare(i);
   std::vector<std::uint8_t> keep(samples.size(), 1);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::size_t known = seen.size();
-    if (i + kAhead < samples.size()) seen.Prefetch(samples.wi(i + kAhead), samples.wo(i + kAhead));
-    if (seen.FindOrAdd(samples.wi(i), samples.wo(i)) < known) {
+    if (seen.FindOrAdd(ahead[i % kAhead]) < known) {
       keep[i] = 0;
       Skip(SetAsideReason::kDuplicate);
     }
+    prepare(i + kAhead);
   }
   if (seen.size() < samples.size()) samples.Keep(keep);
   return std::move(measurement_);

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "lobefit/base/process/memory.h"
+
 namespace lobefit {
 namespace {
 
@@ -28,26 +30,36 @@ std::array<std::int32_t, 6> KeyOf(const Vec3& wi, const Vec3& wo) {
 
 PairIndex::PairIndex(std::size_t expected_pairs) {
   keys_.reserve(expected_pairs);
-  slots_.resize(std::bit_ceil(std::max<std::size_t>(16, 2 * expected_pairs)));
+  AdviseLargePages(keys_.data(), keys_.capacity() * sizeof(Key));
+  const std::size_t slots = std::bit_ceil(std::max<std::size_t>(16, 2 * expected_pairs));
+  slots_.reserve(slots);
+  AdviseLargePages(slots_.data(), slots * sizeof(Slot));
+  slots_.resize(slots);
 }
 
-std::size_t PairIndex::FindOrAdd(const Vec3& wi, const Vec3& wo) {
+std::size_t PairIndex::FindOrAdd(const Pair& pair) {
   if (2 * (keys_.size() + 1) > slots_.size()) Grow();
-  const Key key = KeyOf(wi, wo);
-  const std::uint64_t hash = Hash(key);
-  const auto tag = static_cast<std::uint32_t>(hash >> 32U);
-  std::size_t slot = hash & (slots_.size() - 1);
+  const auto tag = static_cast<std::uint32_t>(pair.hash >> 32U);
+  std::size_t slot = pair.hash & (slots_.size() - 1);
   while (slots_[slot].number != 0) {
-    if (slots_[slot].tag == tag && keys_[slots_[slot].number - 1] == key) return slots_[slot].number - 1;
+    if (slots_[slot].tag == tag && keys_[slots_[slot].number - 1] == pair.key) return slots_[slot].number - 1;
     slot = (slot + 1) & (slots_.size() - 1);
   }
-  keys_.push_back(key);
+  keys_.push_back(pair.key);
   slots_[slot] = {static_cast<std::uint32_t>(keys_.size()), tag};
   return keys_.size() - 1;
 }
 
-void PairIndex::Prefetch(const Vec3& wi, const Vec3& wo) const {
-  __builtin_prefetch(&slots_[Hash(KeyOf(wi, wo)) & (slots_.size() - 1)], 1);
+std::size_t PairIndex::FindOrAdd(const Vec3& wi, const Vec3& wo) {
+  const Key key = KeyOf(wi, wo);
+  return FindOrAdd(Pair{key, Hash(key)});
+}
+
+PairIndex::Pair PairIndex::Prepare(const Vec3& wi, const Vec3& wo) const {
+  const Key key = KeyOf(wi, wo);
+  const std::uint64_t hash = Hash(key);
+  __builtin_prefetch(&slots_[hash & (slots_.size() - 1)], 1);
+  return {key, hash};
 }
 
 void PairIndex::Put(std::uint64_t hash, std::uint32_t number) {

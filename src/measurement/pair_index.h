@@ -15,10 +15,17 @@ class PairIndex {
  public:
   explicit PairIndex(std::size_t expected_pairs = 0);
 
+  // A pair that will be asked for soon.
+  struct Pair {
+    std::array<std::int32_t, 6> key;
+    std::uint64_t hash;
+  };
+  // Brings the place of the pair into the cache; a table of millions lies outside of it.
+  Pair Prepare(const Vec3& wi, const Vec3& wo) const;
+
   // The number of the pair: that of an equal one, or size() before the call where the pair is new.
+  std::size_t FindOrAdd(const Pair& pair);
   std::size_t FindOrAdd(const Vec3& wi, const Vec3& wo);
-  // Brings the place of a pair that will be asked for soon into the cache; a table of millions lies outside of it.
-  void Prefetch(const Vec3& wi, const Vec3& wo) const;
   std::size_t size() const { return keys_.size(); }
 
  private:

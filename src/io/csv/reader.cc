@@ -3,22 +3,22 @@
 #include "lobefit/io/csv/reader.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "lobefit/base/error.h"
-#include "lobefit/base/text/csv_fields.h"
+#include "lobefit/base/process/memory.h"
 #include "lobefit/base/text/text.h"
-#include "lobefit/io/csv/head/head_lines.h"
+#include "lobefit/io/csv/amid_rows.h"
 #include "lobefit/io/csv/head/header.h"
+#include "lobefit/io/csv/rows/angle_ranges.h"
 #include "lobefit/io/csv/rows/distinctions.h"
 #include "lobefit/io/csv/rows/layout.h"
 #include "lobefit/io/csv/rows/mark_tally.h"
 #include "lobefit/io/csv/rows/row_parser.h"
 #include "lobefit/io/csv/rows/row_polarisations.h"
+#include "lobefit/io/csv/rows/row_uncertainty.h"
 #include "lobefit/io/csv/rows/stated_angles.h"
 #include "lobefit/io/csv/rows/wavelengths.h"
 #include "lobefit/io/text/options.h"
@@ -46,13 +46,12 @@ class CsvReader {
     notes_.remarks = header_.remarks;
     layout_ = ReadCsvLayout(file_, header_, options_, &notes_);
     at_ = layout_.fixed;
-    ranges_.assign(layout_.coordinates.size(),
-                   {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
+    ranges_.emplace(layout_);
     repeated_ = options_.repeated.value_or(ParseRepeatedRows(header_.keys.repeated).value_or(RepeatedRows::kFirst));
     if (layout_.by_wavelength) {
-      by_wavelength_.emplace(HasSigmas()    ? WavelengthTable::Weights::kSigma
-                             : HasWeights() ? WavelengthTable::Weights::kWeight
-                                            : WavelengthTable::Weights::kNone);
+      by_wavelength_.emplace(uncertainty_.HasSigmas()    ? WavelengthTable::Weights::kSigma
+                             : uncertainty_.HasWeights() ? WavelengthTable::Weights::kWeight
+                                                         : WavelengthTable::Weights::kNone);
     }
     MeasurementBuilder builder(layout_.channels);
     ReadRows(&builder);
@@ -115,16 +114,16 @@ class CsvReader {
     Samples& rows = builder->measurement().samples;
     if (repeated_ == RepeatedRows::kMean) {
       // The spread of the repetitions stands for the stated uncertainty.
-      if (HasSigmas()) rows.weight.clear();
+      if (uncertainty_.HasSigmas()) rows.weight.clear();
       const Repeats repeats = MergeRepeated(&builder->measurement());
       notes_.remarks.push_back(std::to_string(repeats.samples) + " repeated rows were merged to " +
                                std::to_string(repeats.pairs) + "; a row scatters by " +
                                FormatDouble(std::round(1000 * repeats.relative_spread) / 10) + " % of its mean");
     }
     Measurement measurement = builder->Finish();
-    if (HasSigmas() && repeated_ == RepeatedRows::kFirst) {
+    if (uncertainty_.HasSigmas() && repeated_ == RepeatedRows::kFirst) {
       std::vector<double> sigma = std::exchange(measurement.samples.weight, {});
-      FillUnknown(&sigma);
+      FillUnknown(&sigma, &notes_.remarks);
       if (!sigma.empty()) AddSigma(sigma, &measurement.samples);
     }
     if (measurement.set_aside[SetAsideReason::kDuplicate] > 0) {
@@ -144,7 +143,7 @@ class CsvReader {
     measurement.remarks = std::move(notes_.remarks);
     measurement.comments = std::move(header_.comments);
     measurement.isotropic = layout_.directions.IsIsotropic();
-    for (std::string& remark : FindImplausibleAngles(StateAngles(), rows_))
+    for (std::string& remark : FindImplausibleAngles(ranges_->State(layout_, at_), rows_))
       measurement.remarks.push_back(std::move(remark));
     ScaleToMeanOne(&measurement.samples.weight);
     return measurement;
@@ -170,7 +169,7 @@ class CsvReader {
       if (number < header_.first_data_line || line.empty()) continue;
       const bool may_be_special = line[0] <= '/';  // blank, tab, '#', '%' or "//"
       if (may_be_special && (Trim(line).empty() || IsComment(line))) {
-        if (line[0] != '-' && IsComment(line)) TakeComment(number, CommentText(line));
+        if (line[0] != '-' && IsComment(line)) amid_rows_.TakeComment(number, CommentText(line));
         continue;
       }
       if (builder->measurement().samples.origin.capacity() == 0) Reserve(line.size(), builder);
@@ -178,101 +177,35 @@ class CsvReader {
         case RowParser::Kind::kBlank:
           continue;
         case RowParser::Kind::kWords:
-          TakeWords(line, number, parser);
+          amid_rows_.TakeWords(line, number, parser);
           continue;
         case RowParser::Kind::kRow:
           break;
       }
-      if (!words_message_.empty()) FailAtLine(file_, words_line_, words_message_);
+      if (amid_rows_.pending()) amid_rows_.Fail();
       AddRow(parser, static_cast<std::uint32_t>(number), builder);
     }
-    if (!words_message_.empty() && rows_ == 0 && builder->measurement().set_aside.total() == 0)
-      FailAtLine(file_, words_line_, words_message_);
-    if (!words_message_.empty()) {
-      notes_.remarks.push_back(std::to_string(words_) + (words_ == 1 ? " line" : " lines") +
-                               " after the last row, from line " + std::to_string(words_line_) + " on, hold no row: '" +
-                               words_text_ + "'");
-    }
-  }
-
-  // The names again, where files were joined; a key of the rows that follow; else a footer, unless rows come after it.
-  void TakeWords(std::string_view line, std::size_t number, const RowParser& parser) {
-    std::vector<std::string_view> fields;
-    SplitCsvLine(line, header_.separator, &fields);
-    if (Trim(line) == Trim(header_.names) || AreNamesAgain(fields)) {
-      // What stands above names is the head of a page.
-      words_message_.clear();
-      words_ = 0;
-      return;
-    }
-    if (ReadKeyAmidRows(number, {}, fields)) return;
-    ++words_;
-    const bool names = NamesADirection(Classify(fields));
-    if (!words_message_.empty() && !names) return;
-    words_line_ = number;
-    words_message_ = names ? "names other columns than line " + std::to_string(header_.names_line) +
-                                 ", or in another order or unit; put each table into a file of its own"
-                           : parser.WordsMessage();
-    words_text_ = Excerpt(Trim(line));
-  }
-
-  // The same columns in the same order, however their names are spelt.
-  bool AreNamesAgain(const std::vector<std::string_view>& fields) const {
-    if (fields.size() != header_.columns.size()) return false;
-    std::string storage;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      const CsvColumn own = ClassifyColumn(header_.columns[i].name),
-                      other = ClassifyColumn(Unquoted(fields[i], &storage));
-      const bool same = own.name == other.name ||
-                        (own.role != ColumnRole::kUnknown && own.role == other.role && own.unit == other.unit &&
-                         own.coordinate == other.coordinate && own.form == other.form && own.channel == other.channel &&
-                         own.value_kind == other.value_kind);
-      if (!same) return false;
-    }
-    return true;
-  }
-
-  void TakeComment(std::size_t number, std::string_view text) {
-    constexpr std::size_t kMostComments = 10000;
-    if (!ReadKeyAmidRows(number, text, {}) && !text.empty() && header_.comments.size() < kMostComments)
-      header_.comments.emplace_back(PlainComment(text));
-  }
-
-  bool ReadKeyAmidRows(std::size_t number, std::string_view comment, const std::vector<std::string_view>& fields) {
-    if (!comment.empty() && comment.find_first_of(":=") == std::string_view::npos) return false;
-    CsvKeys keys = header_.keys;
-    if (!(fields.empty() ? ReadKey(file_, number, comment, &keys) : ReadKey(file_, number, fields, &keys)))
-      return false;
-    RequireSameUnits(file_, number, header_.keys, keys);
-    for (const FixedCoordinate& fixed : keys.fixed) {
-      const FixedCoordinate* before = header_.keys.Find(fixed.coordinate);
-      if (before == nullptr) {
-        if (layout_.directions.Has(fixed.coordinate)) continue;
-        FailAtLine(file_, number,
-                   "an angle is stated here that the rows before lack; state it in the head too, or put the parts into "
-                   "files of their own");
-      }
-      if (before->unit != fixed.unit)
-        FailAtLine(file_, number, "an angle is stated in another unit than before; use one unit");
-      at_[static_cast<std::size_t>(fixed.coordinate)] = fixed.number;
-    }
-    if (keys.wavelength_nm && !header_.keys.wavelength_nm && !layout_.by_wavelength) {
-      FailAtLine(file_, number, "a wavelength is stated here that the rows before lack; state it in the head too");
-    }
-    header_.keys = std::move(keys);
-    return true;
+    if (!amid_rows_.pending()) return;
+    if (rows_ == 0 && builder->measurement().set_aside.total() == 0) amid_rows_.Fail();
+    notes_.remarks.push_back(amid_rows_.Remark());
   }
 
   void Reserve(std::size_t line_size, MeasurementBuilder* builder) const {
     if (by_wavelength_) return;
-    const std::size_t rows = (file_.bytes.size() / (line_size + 1) + 1) * layout_.groups.size();
+    // Lines that are no rows take no memory of more than twice the rows that the first one promises.
+    const std::size_t lines = std::min(EstimateLines(file_.bytes), 2 * (file_.bytes.size() / (line_size + 1) + 1)),
+                      rows = lines * layout_.groups.size();
     Samples& samples = builder->measurement().samples;
+    const auto reserve = [&](auto& array) {
+      array.reserve(rows);
+      AdviseLargePages(array.data(), rows * sizeof(array[0]));
+    };
     for (std::vector<double>* array :
          {&samples.wi_x, &samples.wi_y, &samples.wi_z, &samples.wo_x, &samples.wo_y, &samples.wo_z})
-      array->reserve(rows);
-    for (std::vector<double>& array : samples.values) array.reserve(rows);
-    samples.origin.reserve(rows);
-    if (HasWeights()) samples.weight.reserve(rows);
+      reserve(*array);
+    for (std::vector<double>& array : samples.values) reserve(array);
+    reserve(samples.origin);
+    if (uncertainty_.HasWeights()) reserve(samples.weight);
   }
 
   bool PassesFilters(const RowParser& row) const {
@@ -293,11 +226,7 @@ class CsvReader {
     for (const auto& [coordinate, column] : layout_.coordinates)
       at_[static_cast<std::size_t>(coordinate)] = row.Number(column);
     ++rows_;
-    for (std::size_t k = 0; k < ranges_.size(); ++k) {
-      const double number = row.Number(layout_.coordinates[k].second);
-      ranges_[k].first = std::min(ranges_[k].first, number);
-      ranges_[k].second = std::max(ranges_[k].second, number);
-    }
+    ranges_->Add(row);
     if (!row.marks().empty()) marks_.Add(row.marks(), line, header_.side_tables.empty());
     for (const ValueGroup& group : layout_.groups) {
       if (!group.coordinates.empty() && !TakeCoordinates(row, group)) continue;
@@ -342,14 +271,14 @@ class CsvReader {
       return;
     }
     double weight = 1;
-    if (HasWeights() && !WeightOfRow(row, group, line, factor, &weight)) {
+    if (uncertainty_.HasWeights() && !uncertainty_.Find(row, group, line, factor, &weight)) {
       builder->Skip(SetAsideReason::kFlagged);
       return;
     }
     if (by_wavelength_) {
       AddWavelength(row, group, {wi, wo, 0, values_[0], weight, line}, builder);
     } else if (builder->Add(wi, wo, values_.data(), line)) {
-      if (HasWeights()) builder->measurement().samples.weight.push_back(weight);
+      if (uncertainty_.HasWeights()) builder->measurement().samples.weight.push_back(weight);
       if (polarisations_.any()) polarisations_.Add(row, group);
     }
   }
@@ -376,103 +305,6 @@ class CsvReader {
     }
   }
 
-  bool HasSigmas() const {
-    return layout_.sigma != kNoColumn || !layout_.channel_sigmas.empty() || layout_.groups[0].sigma != kNoColumn;
-  }
-  bool HasWeights() const { return layout_.weight != kNoColumn || HasSigmas(); }
-
-  // The row's weight, or the standard deviation of its f_r (root mean square over the channels; NaN where it is not
-  // known), which takes the weight's place until all rows are known. False where the file gives the row no weight.
-  bool WeightOfRow(const RowParser& row, const ValueGroup& group, std::size_t line, double factor,
-                   double* weight) const {
-    if (layout_.weight != kNoColumn) {
-      *weight = row.Number(layout_.weight);
-      if (*weight == 0) return false;
-      if (!(*weight >= 1e-100 && *weight <= 1e100)) {
-        FailAtLine(file_, line, "the weight is " + FormatDouble(*weight) + "; it must be 0, or 1e-100 to 1e100");
-      }
-      return true;
-    }
-    double variance = 0, count = 0;
-    const auto add = [&](std::size_t column, std::size_t value_column) {
-      const double number = row.Number(column);
-      if (number < 0 || std::isinf(number)) {
-        FailAtLine(file_, line,
-                   "the standard deviation in column " + std::to_string(column + 1) + " is " + FormatDouble(number) +
-                       "; it must be more than 0");
-      }
-      const double sigma = StandardDeviation(header_.columns[column], number, row.Number(value_column));
-      if (!(sigma > 0)) return;  // 0 and no value: not known
-      variance += sigma * sigma;
-      ++count;
-    };
-    if (layout_.sigma != kNoColumn) add(layout_.sigma, group.values[0]);
-    if (group.sigma != kNoColumn) add(group.sigma, group.values[0]);
-    for (std::size_t c = 0; c < layout_.channel_sigmas.size(); ++c) add(layout_.channel_sigmas[c], group.values[c]);
-    *weight = count > 0 ? factor * std::sqrt(variance / count) : std::nan("");
-    return true;
-  }
-
-  // Of the value before the cosines, from what the column says about its numbers.
-  double StandardDeviation(const CsvColumn& column, double number, double value) const {
-    number = (column.variance ? std::sqrt(number) : number) / column.coverage_factor;
-    const bool percent = column.unit == "%" || column.unit == "percent";
-    const double unit = percent ? 0.01 : column.unit == "ppm" ? 1e-6 : 1;
-    const bool in_units_of_value =
-        percent && layout_.value_scale.factor == 0.01 && ToLower(column.name).find("rel") == std::string::npos;
-    if (column.relative && !in_units_of_value) return unit * number * std::fabs(layout_.value_scale.Apply(value));
-    const std::optional<ValueScale> own =
-        column.unit.empty() || in_units_of_value ? std::nullopt : ParseValueScale(column.unit);
-    // Decibels are a ratio, whatever the values are in.
-    if (own && own->form != ValueScale::Form::kLinear) {
-      const double brdf = layout_.value_scale.Apply(value);
-      return std::fabs(brdf) * own->Slope(0) * number;
-    }
-    if (own && own->form == ValueScale::Form::kLinear && layout_.value_scale.form == ValueScale::Form::kLinear)
-      return own->factor * number;
-    return std::fabs(layout_.value_scale.Slope(value)) * number;
-  }
-
-  // A sample without an uncertainty gets the middle one of the others.
-  void FillUnknown(std::vector<double>* sigma) {
-    if (std::none_of(sigma->begin(), sigma->end(), [](double s) { return std::isnan(s); })) return;
-    std::vector<double> known;
-    for (const double s : *sigma) {
-      if (!std::isnan(s)) known.push_back(s);
-    }
-    notes_.remarks.push_back(std::to_string(sigma->size() - known.size()) + " samples have no uncertainty" +
-                             (known.empty() ? "; none was used" : "; the median of the others stands for it"));
-    if (known.empty()) {
-      sigma->clear();
-      return;
-    }
-    std::nth_element(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2), known.end());
-    for (double& s : *sigma) {
-      if (std::isnan(s)) s = known[known.size() / 2];
-    }
-  }
-
-  // For the check of conventions: how far the angles reach, whatever directions they gave.
-  StatedAngles StateAngles() const {
-    StatedAngles stated;
-    static constexpr std::array<std::pair<Coordinate, const char*>, 5> kNames = {{{Coordinate::kThetaI, "theta_i"},
-                                                                                  {Coordinate::kPhiI, "phi_i"},
-                                                                                  {Coordinate::kThetaO, "theta_o"},
-                                                                                  {Coordinate::kPhiO, "phi_o"},
-                                                                                  {Coordinate::kDeltaPhi, "dphi"}}};
-    for (const auto& [coordinate, name] : kNames) {
-      if (!layout_.directions.Has(coordinate)) continue;
-      const double degrees = RadiansToDegrees(layout_.directions.RadiansPerUnit(coordinate));
-      std::pair<double, double> range(at_[static_cast<std::size_t>(coordinate)],
-                                      at_[static_cast<std::size_t>(coordinate)]);
-      for (std::size_t k = 0; k < ranges_.size(); ++k) {
-        if (layout_.coordinates[k].first == coordinate) range = ranges_[k];
-      }
-      stated[name] = {degrees * range.first, degrees * range.second};
-    }
-    return stated;
-  }
-
   const InputFile& file_;
   const ReadOptions& options_;
   CsvHeader header_;
@@ -480,13 +312,14 @@ class CsvReader {
   Measurement notes_;
   RepeatedRows repeated_ = RepeatedRows::kFirst;
   Coordinates at_ = {};
-  std::vector<std::pair<double, double>> ranges_;  // of the coordinates that columns give, in the file's units
+  std::optional<AngleRanges> ranges_;  // as soon as the layout is known
   std::vector<double> values_;
   std::optional<WavelengthTable> by_wavelength_;  // where rows have wavelengths of their own
   MarkTally marks_;
-  std::size_t rows_ = 0, words_ = 0, words_line_ = 0;
-  std::string words_message_, words_text_;
+  std::size_t rows_ = 0;
+  AmidRows amid_rows_{file_, layout_, &header_, &at_};
   RowPolarisations polarisations_{header_, layout_};
+  RowUncertainty uncertainty_{file_, header_, layout_};
 };
 
 }  // namespace

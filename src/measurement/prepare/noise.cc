@@ -1,6 +1,7 @@
 #include "lobefit/measurement/prepare/noise.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lobefit/math/statistics.h"
@@ -53,27 +54,27 @@ std::optional<RectifiedNoise> FindRectifiedNoise(const Measurement& measurement)
   constexpr int kLeastAlternations = 3;
   const Samples& samples = measurement.samples;
   if (samples.size() < kLength) return std::nullopt;
-  std::vector<double> readings;
+  const auto reading = [&](std::size_t i) { return samples.values[0][i] * samples.wi_z[i]; };
   double largest = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double reading = samples.values[0][i] * samples.wi_z[i];
-    if (reading < 0) return std::nullopt;  // the sign was kept
-    readings.push_back(reading);
-    largest = std::max(largest, reading);
+    if (reading(i) < 0) return std::nullopt;  // the sign was kept
+    largest = std::max(largest, reading(i));
   }
+  const auto near = [](const Vec3& a, const Vec3& b) { return Dot(a - b, a - b) < kNearby * kNearby; };
   std::vector<double> mean_squares;
   std::size_t begin = 0;
   while (begin + kLength <= samples.size()) {
     std::size_t end = begin + 1;
-    while (end < begin + kLength && Norm(samples.wi(end) - samples.wi(end - 1)) < kNearby &&
-           Norm(samples.wo(end) - samples.wo(end - 1)) < kNearby) {
+    while (end < begin + kLength && near(samples.wi(end), samples.wi(end - 1)) &&
+           near(samples.wo(end), samples.wo(end - 1)))
       ++end;
-    }
     if (end < begin + kLength) {
       begin = end;
       continue;
     }
-    const Stretch stretch = DescribeStretch(&readings[begin], kLength);
+    std::array<double, kLength> readings = {};
+    for (std::size_t k = 0; k < kLength; ++k) readings[k] = reading(begin + k);
+    const Stretch stretch = DescribeStretch(readings.data(), kLength);
     if (stretch.noise > kLeastRatio * stretch.mean && stretch.alternations >= kLeastAlternations && stretch.mean > 0 &&
         stretch.mean < 0.02 * largest) {
       mean_squares.push_back(stretch.mean_square);
@@ -83,8 +84,7 @@ std::optional<RectifiedNoise> FindRectifiedNoise(const Measurement& measurement)
   if (mean_squares.size() < kLeastStretches) return std::nullopt;
   RectifiedNoise noise;
   noise.floor = std::sqrt(Median(mean_squares));
-  noise.samples_below = static_cast<std::size_t>(
-      std::count_if(readings.begin(), readings.end(), [&](double reading) { return reading < 3 * noise.floor; }));
+  for (std::size_t i = 0; i < samples.size(); ++i) noise.samples_below += reading(i) < 3 * noise.floor ? 1 : 0;
   return noise;
 }
 

@@ -1,5 +1,9 @@
 // Marks for no value, rows that are chosen, columns that tell rows apart, channels chosen before rows are judged.
+#include <algorithm>
+
 #include "tests/io/csv/read_csv.h"
+
+#include "lobefit/io/csv/head/lines.h"
 
 namespace lobefit {
 namespace {
@@ -140,6 +144,18 @@ TEST(CsvMarks, WavelengthsWithinAToleranceAreOneChannel) {
   EXPECT_EQ(m.set_aside[SetAsideReason::kDuplicate], 1U);
 }
 
+// Memory for the rows is asked for by it, and what is too little is copied.
+TEST(CsvLines, EstimateOfRowsWhoseLengthVaries) {
+  EXPECT_EQ(EstimateLines("a\nb\nc"), 3U);
+  std::string text;
+  for (int i = 0; i < 200000; ++i)
+    text += (i < 100000 ? "10.00000000,20.00000000,1.00000000" : "10,20,1.5") +
+            std::string(1 + static_cast<std::size_t>(i % 7), '0') + "\n";
+  const std::size_t estimate = EstimateLines(text);
+  EXPECT_GE(estimate, 200000U);
+  EXPECT_LE(estimate, 206000U);
+}
+
 // Each is refused before any of it is looked at.
 TEST(CsvLimits, ColumnsWavelengthsAndLines) {
   std::string names = "theta_i,theta_o,dphi", row = "10,20,0";
@@ -154,6 +170,12 @@ TEST(CsvLimits, ColumnsWavelengthsAndLines) {
   EXPECT_NE(MessageOf(many + "\n").find("line 1: has 70003 fields; at most 65536 columns are read"), std::string::npos);
   EXPECT_NE(MessageOf("theta_i,theta_o,brdf\n10,20,1\n" + std::string(std::size_t{5} << 20, '1'))
                 .find("line 3: has 5242880 bytes; at most 4194304 are read"),
+            std::string::npos);
+  std::string deep = "theta_i,theta_o,brdf\n";
+  while (deep.size() < (std::size_t{9} << 20)) deep += "10,20,1\n";
+  const std::size_t lines = static_cast<std::size_t>(std::count(deep.begin(), deep.end(), '\n'));
+  EXPECT_NE(MessageOf(deep + std::string(std::size_t{5} << 20, '1') + "\n10,20,1\n")
+                .find("line " + std::to_string(lines + 1) + ": has 5242880 bytes; at most 4194304 are read"),
             std::string::npos);
   std::string wander = "theta_i,theta_o,wavelength_nm,brdf\n";
   for (int i = 0; i < 5000; ++i)

@@ -36,6 +36,10 @@ class CsvLines {
   std::size_t first_line_ = 0;
 };
 
+// About how many lines, and seldom fewer than there are: from pieces all over the text, so that rows whose length
+// varies are not taken for the first.
+std::size_t EstimateLines(std::string_view bytes);
+
 // Fields of a line, as written.
 void SplitCsvLine(std::string_view line, char separator, std::vector<std::string_view>* fields);
 

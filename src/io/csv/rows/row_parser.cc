@@ -41,6 +41,10 @@ RowParser::RowParser(const InputFile& file, const CsvHeader& header, const CsvLa
   for (const std::size_t i : layout.channel_sigmas) needed_[i] |= kMayLack;
   for (const RowFilter& filter : layout.filters) needed_[filter.column] |= kText;
   for (const std::size_t i : layout.polarisations) needed_[i] |= kText;
+  for (std::size_t i = 0; i < written_; ++i) {
+    fast_.push_back((needed_[i] & (kNumber | kText)) == kNumber &&
+                    ((needed_[i] & kMayLack) == 0 || no_values_.empty()));
+  }
   is_table_ = layout.groups.size() > 1;
 }
 
@@ -104,18 +108,12 @@ bool RowParser::TakeCell(std::string_view text, std::size_t column) {
   return true;
 }
 
-// Only its number is needed, and none stands for no value.
-bool RowParser::IsFast(std::size_t column) const {
-  const unsigned char needed = needed_[column];
-  return (needed & (kNumber | kText)) == kNumber && ((needed & kMayLack) == 0 || no_values_.empty());
-}
-
 void RowParser::SplitFast(std::string_view line) {
   const char separator = header_.separator, mark = header_.decimal_mark;
   std::size_t begin = 0;
   while (true) {
     // Most fields are plain numbers that fill their field: one pass over the characters.
-    if (columns_ < written_ && IsFast(columns_) && begin < line.size()) {
+    if (columns_ < written_ && fast_[columns_] != 0 && begin < line.size()) {
       const std::size_t quote = line[begin] == '"' ? 1 : 0;
       std::size_t length = 0;
       // Between commas only a number in quotes has a decimal comma.
@@ -153,7 +151,7 @@ void RowParser::SplitBlankSeparated(std::string_view line) {
     if (at == line.size()) return;
     std::size_t length = 0;
     std::optional<double> plain;
-    if (columns_ < written_ && IsFast(columns_))
+    if (columns_ < written_ && fast_[columns_] != 0)
       plain = ParsePlainDecimal(line.substr(at), &length, header_.decimal_mark);
     std::size_t end = at + length;
     if (plain && (end == line.size() || is_blank(line[end]))) {

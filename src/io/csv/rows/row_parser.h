@@ -38,7 +38,6 @@ class RowParser {
  private:
   void TakeOther(std::string_view field, std::size_t column);
   bool TakeCell(std::string_view text, std::size_t column);
-  bool IsFast(std::size_t column) const;
   void SplitFast(std::string_view line);
   void SplitBlankSeparated(std::string_view line);
   bool IsSummary(std::string_view line) const;
@@ -49,6 +48,7 @@ class RowParser {
   NoValues no_values_;
   std::size_t written_;                // columns that a row has fields of
   std::vector<unsigned char> needed_;  // 1: a number, 2: a text, 4: may have no value
+  std::vector<unsigned char> fast_;    // only its number is needed, and none stands for no value; one a written column
   std::vector<double> numbers_;
   std::vector<std::string_view> texts_;
   std::vector<std::pair<std::size_t, std::string_view>> marks_;

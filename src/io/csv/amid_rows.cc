@@ -1,0 +1,86 @@
+#include "lobefit/io/csv/amid_rows.h"
+
+#include <utility>
+
+#include "lobefit/base/text/csv_fields.h"
+#include "lobefit/base/text/text.h"
+#include "lobefit/io/csv/head/head_lines.h"
+#include "lobefit/io/text/place.h"
+
+namespace lobefit {
+
+void AmidRows::TakeWords(std::string_view line, std::size_t number, const RowParser& parser) {
+  std::vector<std::string_view> fields;
+  SplitCsvLine(line, header_.separator, &fields);
+  if (Trim(line) == Trim(header_.names) || AreNamesAgain(fields)) {
+    // What stands above names is the head of a page.
+    message_.clear();
+    words_ = 0;
+    return;
+  }
+  if (ReadKeyAmidRows(number, {}, fields)) return;
+  ++words_;
+  const bool names = NamesADirection(Classify(fields));
+  if (!message_.empty() && !names) return;
+  line_ = number;
+  message_ = names ? "names other columns than line " + std::to_string(header_.names_line) +
+                         ", or in another order or unit; put each table into a file of its own"
+                   : parser.WordsMessage();
+  text_ = Excerpt(Trim(line));
+}
+
+// The same columns in the same order, however their names are spelt.
+bool AmidRows::AreNamesAgain(const std::vector<std::string_view>& fields) const {
+  if (fields.size() != header_.columns.size()) return false;
+  std::string storage;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const CsvColumn own = ClassifyColumn(header_.columns[i].name),
+                    other = ClassifyColumn(Unquoted(fields[i], &storage));
+    const bool same = own.name == other.name ||
+                      (own.role != ColumnRole::kUnknown && own.role == other.role && own.unit == other.unit &&
+                       own.coordinate == other.coordinate && own.form == other.form && own.channel == other.channel &&
+                       own.value_kind == other.value_kind);
+    if (!same) return false;
+  }
+  return true;
+}
+
+void AmidRows::TakeComment(std::size_t number, std::string_view text) {
+  constexpr std::size_t kMostComments = 10000;
+  if (!ReadKeyAmidRows(number, text, {}) && !text.empty() && header_.comments.size() < kMostComments)
+    header_.comments.emplace_back(PlainComment(text));
+}
+
+bool AmidRows::ReadKeyAmidRows(std::size_t number, std::string_view comment,
+                               const std::vector<std::string_view>& fields) {
+  if (!comment.empty() && comment.find_first_of(":=") == std::string_view::npos) return false;
+  CsvKeys keys = header_.keys;
+  if (!(fields.empty() ? ReadKey(file_, number, comment, &keys) : ReadKey(file_, number, fields, &keys))) return false;
+  RequireSameUnits(file_, number, header_.keys, keys);
+  for (const FixedCoordinate& fixed : keys.fixed) {
+    const FixedCoordinate* before = header_.keys.Find(fixed.coordinate);
+    if (before == nullptr) {
+      if (layout_.directions.Has(fixed.coordinate)) continue;
+      FailAtLine(file_, number,
+                 "an angle is stated here that the rows before lack; state it in the head too, or put the parts into "
+                 "files of their own");
+    }
+    if (before->unit != fixed.unit)
+      FailAtLine(file_, number, "an angle is stated in another unit than before; use one unit");
+    at_[static_cast<std::size_t>(fixed.coordinate)] = fixed.number;
+  }
+  if (keys.wavelength_nm && !header_.keys.wavelength_nm && !layout_.by_wavelength) {
+    FailAtLine(file_, number, "a wavelength is stated here that the rows before lack; state it in the head too");
+  }
+  header_.keys = std::move(keys);
+  return true;
+}
+
+void AmidRows::Fail() const { FailAtLine(file_, line_, message_); }
+
+std::string AmidRows::Remark() const {
+  return std::to_string(words_) + (words_ == 1 ? " line" : " lines") + " after the last row, from line " +
+         std::to_string(line_) + " on, hold no row: '" + text_ + "'";
+}
+
+}  // namespace lobefit
