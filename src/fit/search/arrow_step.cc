@@ -20,16 +20,16 @@ struct Equations {
     }
   }
   int Coordinate(Eigen::Index i) const { return coordinates[static_cast<std::size_t>(i)]; }
-  Eigen::VectorXd Of(const Eigen::VectorXd& all) const {
-    Eigen::VectorXd part(static_cast<Eigen::Index>(coordinates.size()));
-    for (Eigen::Index i = 0; i < part.size(); ++i) part(i) = all(Coordinate(i));
-    return part;
+  Eigen::Index size() const { return static_cast<Eigen::Index>(coordinates.size()); }
+  // Less what is `of` all.
+  void MinusOf(const Eigen::VectorXd& all, Eigen::VectorXd* part) const {
+    part->resize(size());
+    for (Eigen::Index i = 0; i < size(); ++i) (*part)(i) = -all(Coordinate(i));
   }
   // Of x, zero where a coordinate is not held.
-  Eigen::VectorXd Held(const Eigen::VectorXd& x) const {
-    Eigen::VectorXd part = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coordinates.size()));
-    for (const Eigen::Index i : held) part(i) = x(Coordinate(i));
-    return part;
+  void Held(const Eigen::VectorXd& x, Eigen::VectorXd* part) const {
+    part->setZero(size());
+    for (const Eigen::Index i : held) (*part)(i) = x(Coordinate(i));
   }
   // The equation of a held coordinate is that it has its value.
   void TakeOut(Eigen::MatrixXd* own, Eigen::VectorXd* right, const Eigen::VectorXd& values) const {
@@ -43,58 +43,76 @@ struct Equations {
 };
 
 // The minimum in the coordinates that are not held: S x = r - sum B A^-1 g, S = C - sum B A^-1 B^T, with C the border,
-// A a channel's own block and B what is between them; then each channel's own.
+// A a channel's own block and B what is between them; then each channel's own. Hundreds of channels have blocks of two
+// coordinates: what is as large in each of them is allocated once.
 Eigen::VectorXd Minimum(const ArrowMatrix& h, const Eigen::VectorXd& gradient, const std::vector<char>& is_held,
                         const Eigen::VectorXd& x) {
   const Equations border(h.shape.border, is_held, h.border);
-  const Eigen::VectorXd border_held = border.Held(x);
-  Eigen::MatrixXd schur = h.border;
-  Eigen::VectorXd right = -border.Of(gradient) - h.border * border_held;
-  std::vector<Eigen::MatrixXd> to_border(h.own.size());  // A^-1 B^T
-  std::vector<Eigen::VectorXd> alone(h.own.size());      // A^-1 of the right side
-  std::vector<Eigen::VectorXd> channel_held(h.own.size());
+  const bool moves =
+      static_cast<Eigen::Index>(border.held.size()) < border.size();  // or the channels are by themselves
+  Eigen::VectorXd border_held, right, own_held, r;
+  border.Held(x, &border_held);
+  border.MinusOf(gradient, &right);
+  right.noalias() -= h.border * border_held;
+  Eigen::MatrixXd schur = h.border, a, b;
+  Eigen::LDLT<Eigen::MatrixXd> factor;
+  // Of all channels, one below the other: A^-1 B^T, and A^-1 of the right side.
+  const Eigen::Index owned = gradient.size() - border.size();
+  Eigen::MatrixXd to_border(moves ? owned : 0, border.size());
+  Eigen::VectorXd alone(owned);
+  Eigen::Index at = 0;
   for (std::size_t c = 0; c < h.own.size(); ++c) {
     const Equations own(h.shape.own[c], is_held, h.own[c]);
-    channel_held[c] = own.Held(x);
-    Eigen::VectorXd r = -own.Of(gradient) - h.own[c] * channel_held[c] - h.across[c].transpose() * border_held;
-    right -= h.across[c] * channel_held[c];
-    Eigen::MatrixXd a = h.own[c], b = h.across[c];
-    own.TakeOut(&a, &r, channel_held[c]);
-    for (const Eigen::Index i : own.held) b.col(i).setZero();
-    const Eigen::LDLT<Eigen::MatrixXd> factor(a);
-    to_border[c] = factor.solve(b.transpose());
-    alone[c] = factor.solve(r);
-    schur -= b * to_border[c];
-    right -= b * alone[c];
+    own.MinusOf(gradient, &r);
+    if (!border.held.empty()) r.noalias() -= h.across[c].transpose() * border_held;
+    a = h.own[c];
+    if (!own.held.empty()) {
+      own.Held(x, &own_held);
+      r.noalias() -= h.own[c] * own_held;
+      right.noalias() -= h.across[c] * own_held;
+      own.TakeOut(&a, &r, own_held);
+    }
+    factor.compute(a);
+    auto of_channel = alone.segment(at, own.size());
+    of_channel = factor.solve(r);
+    if (moves) {
+      b = h.across[c];
+      for (const Eigen::Index i : own.held) b.col(i).setZero();
+      auto solved = to_border.middleRows(at, own.size());
+      solved = factor.solve(b.transpose());
+      schur.noalias() -= b * solved;
+      right.noalias() -= b * of_channel;
+    }
+    at += own.size();
   }
   border.TakeOut(&schur, &right, border_held);
   const Eigen::VectorXd at_border = schur.ldlt().solve(right);
   // What is held in the border is on the right side already.
   Eigen::VectorXd moved = at_border;
   for (const Eigen::Index i : border.held) moved(i) = 0;
+  if (moves) alone.noalias() -= to_border * moved;
   Eigen::VectorXd minimum(gradient.size());
   for (Eigen::Index i = 0; i < at_border.size(); ++i) minimum(border.Coordinate(i)) = at_border(i);
-  for (std::size_t c = 0; c < h.own.size(); ++c) {
-    const Eigen::VectorXd of_channel = alone[c] - to_border[c] * moved;
-    for (Eigen::Index i = 0; i < of_channel.size(); ++i)
-      minimum(h.shape.own[c][static_cast<std::size_t>(i)]) = of_channel(i);
+  at = 0;
+  for (const std::vector<int>& coordinates : h.shape.own) {
+    for (const int coordinate : coordinates) minimum(coordinate) = alone(at++);
   }
   return minimum;
 }
 
 Eigen::VectorXd Product(const ArrowMatrix& h, const Eigen::VectorXd& x) {
-  const auto part = [](const Eigen::VectorXd& of, const std::vector<int>& coordinates) {
-    Eigen::VectorXd values(static_cast<Eigen::Index>(coordinates.size()));
-    for (std::size_t i = 0; i < coordinates.size(); ++i) values(static_cast<Eigen::Index>(i)) = of(coordinates[i]);
-    return values;
+  const auto take = [&x](const std::vector<int>& coordinates, Eigen::VectorXd* values) {
+    values->resize(static_cast<Eigen::Index>(coordinates.size()));
+    for (std::size_t i = 0; i < coordinates.size(); ++i) (*values)(static_cast<Eigen::Index>(i)) = x(coordinates[i]);
   };
-  Eigen::VectorXd product(x.size());
-  const Eigen::VectorXd x_border = part(x, h.shape.border);
+  Eigen::VectorXd product(x.size()), x_border, x_own, own;
+  take(h.shape.border, &x_border);
   Eigen::VectorXd border = h.border * x_border;
   for (std::size_t c = 0; c < h.own.size(); ++c) {
-    const Eigen::VectorXd x_own = part(x, h.shape.own[c]);
-    border += h.across[c] * x_own;
-    const Eigen::VectorXd own = h.own[c] * x_own + h.across[c].transpose() * x_border;
+    take(h.shape.own[c], &x_own);
+    border.noalias() += h.across[c] * x_own;
+    own.noalias() = h.own[c] * x_own;
+    own.noalias() += h.across[c].transpose() * x_border;
     for (std::size_t i = 0; i < h.shape.own[c].size(); ++i)
       product(h.shape.own[c][i]) = own(static_cast<Eigen::Index>(i));
   }

@@ -135,7 +135,7 @@ std::vector<Ellipsoid> CandidateShapes(const Samples& samples, Ndf ndf, double p
   return shapes;
 }
 
-double SolveLinear(const Problem& problem, const Layout& layout, std::vector<double>* u, ThreadPool* pool) {
+double StepLinear(const Problem& problem, const Layout& layout, std::vector<double>* u, ThreadPool* pool) {
   ArrowMatrix hessian;
   Eigen::VectorXd gradient;
   const double cost = Linearise(problem, layout, u->data(), pool, &hessian, &gradient);
@@ -150,7 +150,7 @@ double SolveLinear(const Problem& problem, const Layout& layout, std::vector<dou
     (*u)[k] = std::clamp((*u)[k] + step(static_cast<Eigen::Index>(k)), layout.coordinates()[k].low,
                          layout.coordinates()[k].high);
   }
-  return problem.Sum(layout.ToKernel(u->data()), false, pool).sum_rho / 2;
+  return cost;
 }
 
 std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, const Samples& samples,
@@ -193,15 +193,12 @@ std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, co
   pool->Run(tuples.size(), [&](std::size_t k) {
     ThreadPool alone(1);
     std::vector<double> u = layout.FromShapes(tuples[k]);
-    SolveLinear(linear_problem, linear_layout, &u, &alone);
-    starts[k] = {u, SolveLinear(problem, layout, &u, &alone)};
+    StepLinear(linear_problem, linear_layout, &u, &alone);
+    starts[k].u = u;
+    starts[k].cost = StepLinear(problem, layout, &u, &alone);
     // The step may overshoot under a compressive metric: keep the better of the two.
-    const double before = problem.Sum(layout.ToKernel(starts[k].u.data()), false, &alone).sum_rho / 2;
-    if (starts[k].cost < before) {
-      starts[k].u = u;
-    } else {
-      starts[k].cost = before;
-    }
+    const double after = problem.Sum(layout.ToKernel(u.data()), false, &alone).sum_rho / 2;
+    if (after < starts[k].cost) starts[k] = {u, after};
   });
   std::erase_if(starts, [](const Start& start) { return !std::isfinite(start.cost); });
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });

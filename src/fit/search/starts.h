@@ -34,8 +34,8 @@ Ellipsoid PeakAxis(const Samples& samples, Ndf ndf, double plane_azimuth);
 std::vector<double> LinearisedWeights(const Samples& samples, Metric metric, const NoiseModel& noise);
 
 // Best amplitudes and albedos for the shapes in `u`, in place, within their bounds: Gauss-Newton on the linear
-// parameters only, a few steps (one is exact where the metric is quadratic in f_r). Returns the cost.
-double SolveLinear(const Problem& problem, const Layout& layout, std::vector<double>* u, ThreadPool* pool);
+// parameters only, one step (exact where the metric is quadratic in f_r). Returns the cost before the step.
+double StepLinear(const Problem& problem, const Layout& layout, std::vector<double>* u, ThreadPool* pool);
 
 // All candidates (for several lobes, ordered tuples of them), best first, with their linear parameters solved for.
 std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, const Samples& samples, ThreadPool* pool);

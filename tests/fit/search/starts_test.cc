@@ -17,7 +17,7 @@ TEST(StratifiedSubsample, TakesOneFromEachRunAndIsReproducible) {
   EXPECT_EQ(StratifiedSubsample(5, 100, 7), (std::vector<std::size_t>{0, 1, 2, 3, 4}));
 }
 
-TEST(SolveLinear, IsExactInOneStepWhereTheMetricIsQuadratic) {
+TEST(StepLinear, IsExactInOneStepWhereTheMetricIsQuadratic) {
   const SyntheticCase truth = OneLobe(Ndf::kGgx, 0.2, 0.2, 0, 0, 0);
   Measurement measurement = Synthetic(truth, StandardLayout(), 0, 1);
   for (const Metric metric : {Metric::kCosineL2, Metric::kRelative, Metric::kNgan}) {
@@ -27,8 +27,9 @@ TEST(SolveLinear, IsExactInOneStepWhereTheMetricIsQuadratic) {
     const Problem problem(measurement.samples, recipe);
     ThreadPool pool(1);
     std::vector<double> u = layout.FromShapes({{0.2, 0.2, 0, 0, 0}});
-    const double cost = SolveLinear(problem, layout, &u, &pool);
-    EXPECT_LT(cost, 1e-20);
+    const double before = problem.Sum(layout.ToKernel(u.data()), false, &pool).sum_rho / 2;
+    EXPECT_DOUBLE_EQ(StepLinear(problem, layout, &u, &pool), before);
+    EXPECT_LT(problem.Sum(layout.ToKernel(u.data()), false, &pool).sum_rho / 2, 1e-20);
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(u[1 + c], truth.values[5][c], 1e-10);
       EXPECT_NEAR(u[4 + c], truth.values[6][c], 1e-10);
@@ -36,7 +37,7 @@ TEST(SolveLinear, IsExactInOneStepWhereTheMetricIsQuadratic) {
   }
 }
 
-TEST(SolveLinear, StaysWithinTheBounds) {
+TEST(StepLinear, StaysWithinTheBounds) {
   // A truth whose f0 is far above 1: the best amplitude within the bounds is 1.
   SyntheticCase truth = OneLobe(Ndf::kGgx, 0.2, 0.2, 0, 0, 0, {3, 3, 3}, {0.1, 0.1, 0.1});
   Measurement measurement = Synthetic(truth, StandardLayout(), 0, 1);
@@ -45,7 +46,7 @@ TEST(SolveLinear, StaysWithinTheBounds) {
   const Layout layout(recipe, measurement.channels.names);
   ThreadPool pool(1);
   std::vector<double> u = layout.FromShapes({{0.2, 0.2, 0, 0, 0}});
-  SolveLinear(Problem(measurement.samples, recipe), layout, &u, &pool);
+  StepLinear(Problem(measurement.samples, recipe), layout, &u, &pool);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(u[1 + c], 1.0);
 }
 
