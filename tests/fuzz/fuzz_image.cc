@@ -32,7 +32,10 @@ void ReadRows(lobefit::ImageRows* image) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const int file = memfd_create("fuzz", 0);
-  if (file < 0 || ftruncate(file, 0) != 0 || pwrite(file, data, size, 0) != static_cast<ssize_t>(size)) std::abort();
+  // Pages of the run before stay.
+  if (file < 0 || pwrite(file, data, size, 0) != static_cast<ssize_t>(size) ||
+      ftruncate(file, static_cast<off_t>(size)) != 0)
+    std::abort();
   const std::string path = "/proc/self/fd/" + std::to_string(file);
   try {
     if (lobefit::IsExrImage(path)) {
