@@ -73,7 +73,9 @@ void ReportParameters(const Layout& layout, const std::vector<double>& u, const 
       fitted.freedom.push_back(std::isnan(fitted.standard_error_clustered.back())
                                    ? kNan
                                    : uncertainty.freedom[static_cast<std::size_t>(row)]);
-      fitted.independent_freedom.push_back(uncertainty.independent_freedom[static_cast<std::size_t>(row)]);
+      fitted.independent_freedom.push_back(std::isnan(fitted.standard_error.back())
+                                               ? kNan
+                                               : uncertainty.independent_freedom[static_cast<std::size_t>(row)]);
       if (fitted.free) {
         free_rows.push_back(row);
         factors.push_back(1 / InsideFactor(parameters[i]));
