@@ -106,6 +106,7 @@ void AddPriors(const Problem& problem, const Layout& layout, double cost, const 
   const Gains* gains = problem.gains();
   const double of_gains = gains != nullptr ? gains->PriorSum() : 0.0;
   const double variance = (2 * cost - of_gains) / static_cast<double>(problem.size() * problem.channels());
+  bread->residual_variance = variance;
   bread->prior_of_gains = bread->prior_of_coordinates = Eigen::MatrixXd::Zero(bread->size(), bread->size());
   for (std::size_t k = 0; gains != nullptr && k < gains->size(); ++k) {
     bread->lean.push_back(bread->whitening.transpose() * links[k].link / links[k].curvature);

@@ -34,7 +34,8 @@ struct Bread {
   std::vector<Eigen::VectorXd> lean;  // [gain]
   // W^T P W of priors that stand for observations: what they add to the filling, whose unit is a residual's variance.
   Eigen::MatrixXd prior_of_gains, prior_of_coordinates;
-  std::vector<bool> at_bound;  // [coordinate] held at a bound: the cost would go on falling beyond it
+  double residual_variance = 0;  // mean square of the weighed residuals
+  std::vector<bool> at_bound;    // [coordinate] held at a bound: the cost would go on falling beyond it
   // [coordinate] has a part in a direction that is flat: it has no error.
   std::vector<bool> undetermined;
   std::vector<std::string> degenerate;  // the flat directions, in words

@@ -63,12 +63,14 @@ Eigen::MatrixXd UnitColumns(const Eigen::MatrixXd& rows) {
   return columns;
 }
 
-Cluster::Cluster(Eigen::Index m, Eigen::Index numbers)
-    : curvature(Eigen::MatrixXd::Zero(m, m)),
-      score(Eigen::VectorXd::Zero(m)),
-      scatter(Eigen::MatrixXd::Zero(m, m)),
-      squares(Eigen::ArrayXd::Zero(numbers)),
-      fourths(Eigen::ArrayXd::Zero(numbers)) {}
+Cluster::Cluster(const FreedomTally& freedom) {
+  const Eigen::Index m = freedom.numbers().rows();
+  curvature.setZero(m, m);
+  score.setZero(m);
+  if (freedom.exact()) scatter.setZero(m, m);
+  squares.setZero(freedom.numbers().cols());
+  fourths.setZero(freedom.numbers().cols());
+}
 
 void Cluster::Add(const Cluster& other) {
   curvature += other.curvature;
@@ -78,15 +80,18 @@ void Cluster::Add(const Cluster& other) {
   fourths += other.fourths;
 }
 
-ClusterTally::ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters) : freedom_(numbers, clusters) {
+ClusterTally::ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters, double residual_variance)
+    : freedom_(numbers, clusters, residual_variance) {
   filling_ = scatter_ = Eigen::MatrixXd::Zero(numbers.rows(), numbers.rows());
 }
 
 void ClusterTally::Add(const Cluster& cluster) {
   filling_.selfadjointView<Eigen::Lower>().rankUpdate(InverseRootTimes(cluster.curvature, cluster.score));
-  scatter_ += cluster.scatter;
+  if (freedom_.exact()) scatter_ += cluster.scatter;
   freedom_.Add(cluster);
 }
+
+void ClusterTally::AddScatter(const Eigen::MatrixXd& a) { scatter_.selfadjointView<Eigen::Lower>().rankUpdate(a); }
 
 void ClusterTally::Merge(const ClusterTally& other) {
   filling_ += other.filling_;

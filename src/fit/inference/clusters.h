@@ -20,14 +20,16 @@ inline constexpr Eigen::Index kLeastSparse = 200;
 
 // Sums over the samples of one cluster, in whitened coordinates (bread.h).
 struct Cluster {
-  // Of no samples, with m coordinates and as many numbers.
-  Cluster(Eigen::Index m, Eigen::Index numbers);
+  // Of no samples.
+  explicit Cluster(const FreedomTally& freedom);
   void Add(const Cluster& other);
 
   Eigen::MatrixXd curvature;  // m x m: the cluster's part of the second derivatives, which add up to the unit matrix
   Eigen::VectorXd score;      // m: its part of the gradient
-  Eigen::MatrixXd scatter;  // m x m, lower half: sum of a a^T, what the solution moves by without a sample (sandwich.h)
-  Eigen::ArrayXd squares, fourths;  // a number z each (freedom.h): sums of (z^T a)^2 and of its square
+  // m x m, lower half: sum of a a^T, with a what the solution moves by without a sample (sandwich.h). Empty without
+  // FreedomTally::exact: hundreds of channels have no room for one more matrix a cluster.
+  Eigen::MatrixXd scatter;
+  Eigen::ArrayXd squares, fourths;  // a number each: sums of FreedomTally::Squares and of their squares
 };
 
 // (1 - curvature)^(-1/2) times the columns of `vectors`. Directions that the cluster alone determines (curvature above
@@ -42,10 +44,12 @@ Eigen::MatrixXd UnitColumns(const Eigen::MatrixXd& rows);
 // bias where residuals are independent and of one variance.
 class ClusterTally {
  public:
-  // `numbers`: whose degrees of freedom are wanted; kept by reference. `clusters`: how many will be added.
-  ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters);
+  // As FreedomTally.
+  ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters, double residual_variance);
 
   void Add(const Cluster& cluster);
+  // The scatter of samples (m x samples) whose clusters hold none.
+  void AddScatter(const Eigen::MatrixXd& a);
   // Adds what another tally of the same fit has; the order is that of the clusters.
   void Merge(const ClusterTally& other);
 

@@ -17,19 +17,20 @@ Eigen::ArrayXd Excess(const Eigen::ArrayXd& fourths) { return fourths * (2.0 / 3
 
 }  // namespace
 
-FreedomTally::FreedomTally(const Eigen::MatrixXd& numbers, std::size_t clusters)
+FreedomTally::FreedomTally(const Eigen::MatrixXd& numbers, std::size_t clusters, double residual_variance)
     : numbers_(&numbers),
       clusters_(clusters),
       exact_(clusters <= kMostExact &&
-             static_cast<double>(clusters) * static_cast<double>(numbers.size()) <= kMostStored) {
+             static_cast<double>(clusters) * static_cast<double>(numbers.size()) <= kMostStored),
+      per_unit_(residual_variance > 0 ? 1 / residual_variance : 1) {
   squares_ = fourths_ = h_ = e_ = e2_ = squares_2_ = Eigen::ArrayXd::Zero(numbers.cols());
   if (!exact_ || numbers.rows() >= kLeastSparse) sparse_ = numbers.sparseView();
   if (numbers.rows() < kLeastSparse) dense_ = numbers;
 }
 
 Eigen::ArrayXXd FreedomTally::Squares(const Eigen::MatrixXd& a) const {
-  if (numbers_->rows() < kLeastSparse) return PieceTimes(a.transpose(), dense_).array().square();
-  return (sparse_.transpose() * a).transpose().array().square();
+  if (numbers_->rows() < kLeastSparse) return per_unit_ * PieceTimes(a.transpose(), dense_).array().square();
+  return per_unit_ * (sparse_.transpose() * a).transpose().array().square();
 }
 
 void FreedomTally::Add(const Cluster& cluster) {
@@ -39,7 +40,7 @@ void FreedomTally::Add(const Cluster& cluster) {
     const Eigen::MatrixXd root = InverseRootTimes(cluster.curvature, *numbers_);
     Influence influence;
     influence.b = cluster.curvature * root;
-    influence.scattered = cluster.scatter.selfadjointView<Eigen::Lower>() * root;
+    influence.scattered = per_unit_ * (cluster.scatter.selfadjointView<Eigen::Lower>() * root);
     influence.own = root.cwiseProduct(influence.scattered).colwise().sum().transpose().array();
     influence.squares = cluster.squares;
     influence.fourths = cluster.fourths;
@@ -86,7 +87,7 @@ Eigen::ArrayXd FreedomTally::Exact(const Eigen::MatrixXd& scatter) const {
   Eigen::ArrayXd trace = Eigen::ArrayXd::Zero(numbers_->cols()), square = trace;
   for (std::size_t g = 0; g < influence_.size(); ++g) {
     const Influence& one = influence_[g];
-    const Eigen::MatrixXd all = scatter.selfadjointView<Eigen::Lower>() * one.b;
+    const Eigen::MatrixXd all = per_unit_ * (scatter.selfadjointView<Eigen::Lower>() * one.b);
     const Eigen::ArrayXd own = one.own - 2 * dot(one.b, one.scattered) + dot(one.b, all);
     trace += own;
     const Eigen::ArrayXd scale = (one.squares > 0).select(own / one.squares, 0);

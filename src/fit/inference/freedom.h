@@ -31,13 +31,17 @@ struct Cluster;
 class FreedomTally {
  public:
   // `numbers`: m x numbers, z each, of length 1 or 0; kept by reference. `clusters`: how many will be added.
-  FreedomTally(const Eigen::MatrixXd& numbers, std::size_t clusters);
+  // `residual_variance`: the unit of squares, so that their squares are numbers whatever that of the values.
+  FreedomTally(const Eigen::MatrixXd& numbers, std::size_t clusters, double residual_variance);
 
   void Add(const Cluster& cluster);
   // Adds what another tally of the same fit has; the order is that of the clusters.
   void Merge(const FreedomTally& other);
 
-  // (z^T a)^2 of samples a (m x samples, at most kPiece), samples x numbers.
+  const Eigen::MatrixXd& numbers() const { return *numbers_; }
+  // Whether degrees of freedom of clusters are exact, which takes each one's scatter.
+  bool exact() const { return exact_; }
+  // (z^T a)^2 of samples a (m x samples, at most kPiece), samples x numbers, in the unit.
   Eigen::ArrayXXd Squares(const Eigen::MatrixXd& a) const;
 
   // A number each; infinite where no sample has a part in it.
@@ -53,6 +57,7 @@ class FreedomTally {
   const Eigen::MatrixXd* numbers_;
   std::size_t clusters_;
   bool exact_;
+  double per_unit_;
   // Of `numbers`: where many channels leave most of it zero, and else.
   Eigen::SparseMatrix<double> sparse_;
   RowMajorMatrix dense_;
@@ -62,8 +67,8 @@ class FreedomTally {
   Eigen::ArrayXd h_, e_, e2_;
   Eigen::ArrayXd squares_2_;  // without `exact_`: sum over clusters of the square of its w
   struct Influence {
-    Eigen::MatrixXd b, scattered;     // b_g and S_g y_g, m x numbers
-    Eigen::ArrayXd own;               // y_g^T S_g y_g
+    Eigen::MatrixXd b, scattered;     // b_g and S_g y_g, m x numbers, in the unit
+    Eigen::ArrayXd own;               // y_g^T S_g y_g, likewise
     Eigen::ArrayXd squares, fourths;  // the cluster's
   };
   std::vector<Influence> influence_;  // for `exact_`

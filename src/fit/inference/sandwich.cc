@@ -158,15 +158,15 @@ class Filler {
         order_(IncidenceOrder(incidences)) {}
 
   Run Sum(std::size_t begin, std::size_t end) const {
-    const Eigen::Index m = bread_.size();
     Run run;
-    run.tally.emplace(numbers_, incidences_.wi.size());
+    run.tally.emplace(numbers_, incidences_.wi.size(), bread_.residual_variance);
+    const bool exact = run.tally->freedom().exact();
     RowEvaluator evaluator(problem_.kernel_samples(), kernel_);
     LeaveOneOut leave_one_out(bread_);
     WhitenedRows piece;
     piece.rows.resize(problem_.channels());
     Eigen::MatrixXd moves;
-    Run::Part current = {incidences_.group[order_[begin]], Cluster(m, numbers_.cols())};
+    Run::Part current = {incidences_.group[order_[begin]], Cluster(run.tally->freedom())};
     for (std::size_t first = begin; first < end; first += kPiece) {
       const std::size_t last = std::min(end, first + kPiece);
       evaluator.Evaluate(order_, first, last, &piece.samples);
@@ -174,9 +174,10 @@ class Filler {
         piece.rows[c] = PieceTimes(piece.samples.rows[c], whiten_row_[c]);
       if (!bread_.lean.empty()) TakeOutGains(first, &piece);
       const auto count = static_cast<Eigen::Index>(last - first);
-      moves.resize(m, count);
+      moves.resize(bread_.size(), count);
       for (Eigen::Index i = 0; i < count; ++i) leave_one_out.Evaluate(piece, i, moves.col(i).data());
       const Eigen::ArrayXXd squares = run.tally->freedom().Squares(moves);
+      if (!exact) run.tally->AddScatter(moves);
       for (Eigen::Index i = 0; i < count;) {
         const std::uint32_t group = incidences_.group[order_[first + static_cast<std::size_t>(i)]];
         Eigen::Index j = i + 1;
@@ -186,7 +187,7 @@ class Filler {
           current.group = group;
         }
         AddRows(piece, i, j, bread_, &current.cluster);
-        current.cluster.scatter.selfadjointView<Eigen::Lower>().rankUpdate(moves.middleCols(i, j - i));
+        if (exact) current.cluster.scatter.selfadjointView<Eigen::Lower>().rankUpdate(moves.middleCols(i, j - i));
         current.cluster.squares += squares.middleRows(i, j - i).colwise().sum().transpose();
         current.cluster.fourths += squares.middleRows(i, j - i).square().colwise().sum().transpose();
         i = j;
@@ -226,7 +227,7 @@ class Filler {
     } else {
       run->tally->Add(Whole(*part));
     }
-    part->cluster = Cluster(bread_.size(), numbers_.cols());
+    part->cluster = Cluster(run->tally->freedom());
   }
 
   const Problem& problem_;
@@ -262,7 +263,7 @@ Filling FillSandwich(const Problem& problem, const Layout& layout, const std::ve
   const std::size_t runs = RunCount(problem.size());
   const auto m = static_cast<double>(bread.size());
   const auto at_a_time = static_cast<std::size_t>(std::clamp(kMostBytes / (32 * m * m + 1), 2.0, 64.0));
-  ClusterTally tally(numbers, incidences.wi.size());
+  ClusterTally tally(numbers, incidences.wi.size(), bread.residual_variance);
   std::optional<Run::Part> open;
   for (std::size_t first = 0; first < runs; first += at_a_time) {
     std::vector<Run> sums(std::min(runs - first, at_a_time));

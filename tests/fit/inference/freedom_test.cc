@@ -12,12 +12,13 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 
-// A cluster of so many samples that its scatter is known, with noise of the given variance.
-Cluster Known(const Matrix& curvature, const Matrix& numbers, double variance = 1) {
-  Cluster cluster(curvature.rows(), numbers.cols());
+// A cluster of so many samples that its scatter is known, with noise of the given variance; the unit of squares is 1.
+Cluster Known(const ClusterTally& tally, const Matrix& curvature, double variance = 1) {
+  const Matrix& numbers = tally.freedom().numbers();
+  Cluster cluster(tally.freedom());
   cluster.curvature = curvature;
-  cluster.scatter = variance * curvature;
-  cluster.squares = (numbers.transpose() * cluster.scatter * numbers).diagonal().array();
+  if (tally.freedom().exact()) cluster.scatter = variance * curvature;
+  cluster.squares = variance * (numbers.transpose() * curvature * numbers).diagonal().array();
   return cluster;
 }
 
@@ -28,8 +29,8 @@ TEST(FreedomOfClusters, IsOneLessThanTheNumberOfEqualOnes) {
   const Matrix numbers = Matrix::Identity(4, 4);
   for (const std::size_t clusters : {2U, 3U, 8U, 36U, 100U, 101U, 5000U}) {
     const auto g = static_cast<double>(clusters);
-    ClusterTally tally(numbers, clusters);
-    Cluster cluster = Known(Matrix::Identity(4, 4) / g, numbers, 7);
+    ClusterTally tally(numbers, clusters, 1);
+    Cluster cluster = Known(tally, Matrix::Identity(4, 4) / g, 7);
     cluster.score.setOnes();
     for (std::size_t k = 0; k < clusters; ++k) tally.Add(cluster);
     for (const double freedom : FreedomOf(tally)) EXPECT_NEAR(freedom, g - 1, 1e-9 * g) << clusters;
@@ -42,8 +43,8 @@ TEST(FreedomOfClusters, IsOneLessThanTheNumberOfEqualOnes) {
 TEST(FreedomOfClusters, FollowsTheCovarianceOfTheirParts) {
   const Matrix numbers = Matrix::Identity(1, 1);
   const Eigen::Vector4d share(0.1, 0.2, 0.3, 0.4), variance(1, 8, 0.5, 2);
-  ClusterTally tally(numbers, 4);
-  for (int g = 0; g < 4; ++g) tally.Add(Known(Matrix::Constant(1, 1, share(g)), numbers, variance(g)));
+  ClusterTally tally(numbers, 4, 1);
+  for (int g = 0; g < 4; ++g) tally.Add(Known(tally, Matrix::Constant(1, 1, share(g)), variance(g)));
   Matrix parts(4, 4);  // of the scores
   for (int g = 0; g < 4; ++g) {
     for (int k = 0; k < 4; ++k) parts(g, k) = ((g == k ? 1 : 0) - share(g)) / std::sqrt(1 - share(g));
@@ -58,7 +59,7 @@ TEST(FreedomOfClusters, OfManyFollowsTheDefinition) {
   constexpr std::size_t kClusters = 101;
   Matrix numbers(3, 2);
   numbers << 0.6, 0, 0, 0.28, -0.8, 0.96;
-  ClusterTally tally(numbers, kClusters);
+  ClusterTally tally(numbers, kClusters, 1);
   Eigen::ArrayXXd h(kClusters, 2), v(kClusters, 2), fourth(kClusters, 2);
   for (std::size_t k = 0; k < kClusters; ++k) {
     const auto x = static_cast<double>(k);
@@ -66,7 +67,7 @@ TEST(FreedomOfClusters, OfManyFollowsTheDefinition) {
     Matrix curvature = Matrix::Identity(3, 3) * (0.01 + 0.005 * std::sin(x));
     curvature(0, 2) = curvature(2, 0) = 0.004 * std::cos(x);
     curvature(1, 2) = curvature(2, 1) = -0.003 * std::cos(2 * x);
-    Cluster cluster = Known(curvature, numbers, 1 + 0.9 * std::sin(5 * x));
+    Cluster cluster = Known(tally, curvature, 1 + 0.9 * std::sin(5 * x));
     cluster.fourths = 0.3 * cluster.squares.square();
     tally.Add(cluster);
     h.row(row) = (numbers.transpose() * curvature * numbers).diagonal().array();
@@ -84,9 +85,9 @@ TEST(FreedomOfClusters, OfManyFollowsTheDefinition) {
 // One of ten clusters has nearly all the say: fewer than one degree of freedom is left over from it.
 TEST(FreedomOfClusters, FallsWhereFewDecide) {
   const Matrix numbers = Matrix::Identity(1, 1);
-  ClusterTally tally(numbers, 10);
-  tally.Add(Known(Matrix::Constant(1, 1, 0.91), numbers));
-  for (int k = 0; k < 9; ++k) tally.Add(Known(Matrix::Constant(1, 1, 0.01), numbers));
+  ClusterTally tally(numbers, 10, 1);
+  tally.Add(Known(tally, Matrix::Constant(1, 1, 0.91)));
+  for (int k = 0; k < 9; ++k) tally.Add(Known(tally, Matrix::Constant(1, 1, 0.01)));
   EXPECT_LT(FreedomOf(tally)(0), 1.25);
   EXPECT_GT(FreedomOf(tally)(0), 1);
 }
@@ -95,19 +96,19 @@ TEST(FreedomOfClusters, FallsWhereFewDecide) {
 TEST(FreedomOfClusters, FallsWhereFewAreNoisy) {
   const Matrix numbers = Matrix::Identity(1, 1);
   for (const std::size_t clusters : {90U, 300U}) {
-    ClusterTally tally(numbers, clusters);
+    ClusterTally tally(numbers, clusters, 1);
     const Matrix curvature = Matrix::Constant(1, 1, 1 / static_cast<double>(clusters));
-    for (std::size_t k = 0; k < clusters; ++k) tally.Add(Known(curvature, numbers, k < 3 ? 1e4 : 1));
+    for (std::size_t k = 0; k < clusters; ++k) tally.Add(Known(tally, curvature, k < 3 ? 1e4 : 1));
     EXPECT_NEAR(FreedomOf(tally)(0), 3, 0.2) << clusters;
   }
 }
 
 TEST(FreedomOfClusters, IsNoneWhereNoneHasAPartAndAnyWithoutNoise) {
   const Matrix none = Matrix::Zero(2, 1), number = Matrix::Identity(2, 1);
-  ClusterTally without_part(none, 2), without_noise(number, 2);
+  ClusterTally without_part(none, 2, 1), without_noise(number, 2, 1);
   for (int k = 0; k < 2; ++k) {
-    without_part.Add(Known(Matrix::Identity(2, 2) / 2, none));
-    without_noise.Add(Known(Matrix::Identity(2, 2) / 2, number, 0));
+    without_part.Add(Known(without_part, Matrix::Identity(2, 2) / 2));
+    without_noise.Add(Known(without_noise, Matrix::Identity(2, 2) / 2, 0));
   }
   EXPECT_TRUE(std::isnan(FreedomOf(without_part)(0)));
   EXPECT_EQ(FreedomOf(without_noise)(0), INFINITY);
@@ -117,15 +118,40 @@ TEST(FreedomOfClusters, IsNoneWhereNoneHasAPartAndAnyWithoutNoise) {
 TEST(FreedomOfSamples, IsTheNumberOfThoseThatDecide) {
   const Matrix number = Matrix::Identity(1, 1);
   for (const int decide : {1, 30}) {
-    FreedomTally tally(number, 1);
-    Cluster cluster(1, 1);
+    FreedomTally tally(number, 1, 1);
+    Cluster cluster(tally);
     // Normal residuals in the mean: w^2 is three times the square of its mean.
     cluster.squares(0) = decide;
     cluster.fourths(0) = 3 * decide;
     tally.Add(cluster);
     EXPECT_NEAR(tally.OfSamples()(0), decide, 1e-12 * decide);
   }
-  EXPECT_EQ(FreedomTally(number, 1).OfSamples()(0), INFINITY);
+  EXPECT_EQ(FreedomTally(number, 1, 1).OfSamples()(0), INFINITY);
+}
+
+// The unit of the values does not matter: squares of squares of the smallest residuals would be zero.
+TEST(FreedomOfSamples, IsThatOfAnyUnit) {
+  const Matrix numbers = Matrix::Identity(2, 2);
+  Matrix moves(2, 3);
+  moves << 1, -2, 3, 0.5, 0, -4;
+  Eigen::VectorXd of_one;
+  for (const double unit : {1.0, 1e-120, 1e120}) {
+    ClusterTally tally(numbers, 2, unit * unit);
+    for (int k = 0; k < 2; ++k) {
+      Cluster cluster(tally.freedom());
+      cluster.curvature = numbers / 2;
+      const Eigen::ArrayXXd squares = tally.freedom().Squares(unit * moves);
+      cluster.scatter = unit * moves * (unit * moves).transpose();
+      cluster.squares = squares.colwise().sum().transpose();
+      cluster.fourths = squares.square().colwise().sum().transpose();
+      tally.Add(cluster);
+    }
+    Eigen::VectorXd found(4);
+    found << tally.freedom().OfSamples(), FreedomOf(tally);
+    if (unit == 1) of_one = found;
+    EXPECT_LT((found - of_one).norm(), 1e-12 * of_one.norm()) << unit;
+  }
+  EXPECT_TRUE(of_one.allFinite());
 }
 
 }  // namespace
