@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "lobefit/fit/inference/uncertainty.h"
+#include "lobefit/fit/errors/uncertainty.h"
 #include "lobefit/fit/last_descent.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/energy_rule.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "lobefit/fit/inference/uncertainty.h"
+#include "lobefit/fit/errors/uncertainty.h"
 #include "lobefit/fit/last_descent.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/incidence.h"

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "lobefit/fit/inference/file_clusters.h"
-#include "lobefit/fit/inference/uncertainty.h"
+#include "lobefit/fit/errors/file_clusters.h"
+#include "lobefit/fit/errors/uncertainty.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/distinct.h"

@@ -31,7 +31,7 @@ struct FittedParameter {
   bool free = true;
   bool at_bound = false;
   // Standard error where the samples of one file of a series are taken as dependent too, and its degrees of freedom
-  // (fit/inference/file_clusters.h). Empty where there are no files that say more than incidences.
+  // (fit/errors/file_clusters.h). Empty where there are no files that say more than incidences.
   std::vector<double> standard_error_by_file = {}, freedom_by_file = {};
 };
 

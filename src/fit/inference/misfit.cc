@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/core/ellipsoid/off_center.h"
-#include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/errors/sample_rows.h"
 #include "lobefit/fit/metric/transform.h"
 #include "lobefit/fit/search/symmetric_eigen.h"
 #include "lobefit/math/directions.h"

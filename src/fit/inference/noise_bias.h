@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "lobefit/fit/errors/uncertainty.h"
 #include "lobefit/fit/inference/noise_estimate.h"
-#include "lobefit/fit/inference/uncertainty.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 

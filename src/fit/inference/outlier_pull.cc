@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "lobefit/fit/inference/bread.h"
-#include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/errors/bread.h"
+#include "lobefit/fit/errors/sample_rows.h"
 
 namespace lobefit {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "lobefit/core/ellipsoid/ellipsoid_symmetry.h"
 #include "lobefit/core/ellipsoid/off_center.h"
-#include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/errors/sample_rows.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/incidence.h"
 

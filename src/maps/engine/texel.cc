@@ -71,10 +71,14 @@ bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit)
          used * static_cast<std::size_t>(channels_) > static_cast<std::size_t>(FreeUnknowns(model, bounds_));
 }
 
-bool TexelFitter::IsDoubtful(const MapDescent& descent) const {
+bool TexelFitter::WidthAtBound(const MapModel& model, const MapPoint& point) const {
   const auto at_bound = [&](double width) { return width <= bounds_.least_width || width >= bounds_.most_width; };
+  return !bounds_.width_held && (at_bound(point.width[0]) || (model.lobe != MapLobe::kGgx && at_bound(point.width[2])));
+}
+
+bool TexelFitter::IsDoubtful(const MapModel& model, const MapDescent& descent) const {
   return !descent.converged || IsRough(descent.cost, rules_.loss, data_.lights.count) ||
-         (!bounds_.width_held && at_bound(descent.point.width[0]));
+         WidthAtBound(model, descent.point);
 }
 
 MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent& lambert) {
@@ -112,7 +116,7 @@ MapDescent TexelFitter::DescendWithLobe(const MapModel& model, const MapDescent&
   best.cost = std::numeric_limits<double>::infinity();
   int iterations = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    if (k >= few && !rules_.every_start && !IsDoubtful(best)) break;
+    if (k >= few && !rules_.every_start && !IsDoubtful(model, best)) break;
     const MapDescent descent = Descend(model, data_, starts[k].point, bounds_, rules_.loss, &objective_, kFineTolerance,
                                        k == 0 || rules_.every_start ? nullptr : &best);
     iterations += descent.iterations;

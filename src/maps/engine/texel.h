@@ -83,8 +83,9 @@ class TexelFitter {
 
  private:
   bool Select(const float* values, std::size_t stride, TexelFit* fit);
+  bool WidthAtBound(const MapModel& model, const MapPoint& point) const;
   // Whether a minimum may well not be the lowest: rough, not reached, or with a width at its bound.
-  bool IsDoubtful(const MapDescent& descent) const;
+  bool IsDoubtful(const MapModel& model, const MapDescent& descent) const;
   MapDescent DescendWithLobe(const MapModel& model, const MapDescent& lambert);
   void Report(const MapModel& model, const MapDescent& best, TexelFit* fit);
   void ReportNormal(const MapPoint& point, const MapErrors& errors, TexelFit* fit) const;

@@ -89,17 +89,13 @@ void TexelFitter::ReportNormal(const MapPoint& point, const MapErrors& errors, T
 
 void TexelFitter::ReportWidths(const MapModel& model, const MapPoint& point, const MapErrors& errors,
                                TexelFit* fit) const {
-  const bool two = model.lobe != MapLobe::kGgx;
-  const auto at_bound = [&](double width) { return width <= bounds_.least_width || width >= bounds_.most_width; };
-  if (!bounds_.width_held && (at_bound(point.width[0]) || (two && at_bound(point.width[2])))) {
-    fit->status |= kMapAtBound;
-  }
+  if (WidthAtBound(model, point)) fit->status |= kMapAtBound;
   if (model.lobe == MapLobe::kEllipsoid) {
     if (!bounds_.slope_held && std::max(std::fabs(point.slope[0]), std::fabs(point.slope[1])) >= bounds_.most_slope) {
       fit->status |= kMapAtBound;
     }
     Ellipsoids(point, errors, fit);
-  } else if (two) {
+  } else if (model.lobe == MapLobe::kGgxAnisotropic) {
     Axes(point, errors, fit);
   } else {
     fit->alpha_x = fit->alpha_y = std::exp(point.width[0]);

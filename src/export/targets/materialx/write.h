@@ -8,8 +8,7 @@ namespace lobefit {
 
 inline constexpr const char* kMaterialXMasking =
     "height-correlated Smith of the mean width, with energy compensation, which MaterialX' own shaders take from a fit "
-    "of "
-    "the albedo, some percent off at grazing";
+    "of the albedo, some percent off at grazing";
 
 Target MaterialXTarget();
 

@@ -1,4 +1,4 @@
-#include "lobefit/fit/inference/uncertainty.h"
+#include "lobefit/fit/errors/uncertainty.h"
 
 #include <array>
 #include <cmath>
@@ -14,7 +14,8 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include "lobefit/fit/inference/file_clusters.h"
+#include "lobefit/fit/errors/file_clusters.h"
+#include "lobefit/fit/search/solve.h"
 #include "lobefit/measurement/incidence.h"
 
 namespace lobefit {

@@ -1,4 +1,4 @@
-#include "lobefit/fit/inference/uncertainty.h"
+#include "lobefit/fit/errors/uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include <Eigen/SparseCore>
 
-#include "lobefit/fit/inference/bread.h"
-#include "lobefit/fit/inference/clusters.h"
-#include "lobefit/fit/inference/sandwich.h"
+#include "lobefit/fit/errors/bread.h"
+#include "lobefit/fit/errors/clusters.h"
+#include "lobefit/fit/errors/sandwich.h"
 #include "lobefit/fit/objective/gains.h"
 
 namespace lobefit {

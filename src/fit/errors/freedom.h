@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/errors/sample_rows.h"
 
 namespace lobefit {
 

@@ -1,12 +1,12 @@
-#include "lobefit/fit/inference/sandwich.h"
+#include "lobefit/fit/errors/sandwich.h"
 
 #include <algorithm>
 #include <optional>
 
 #include <Eigen/Cholesky>
 
-#include "lobefit/fit/inference/clusters.h"
-#include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/errors/clusters.h"
+#include "lobefit/fit/errors/sample_rows.h"
 #include "lobefit/fit/objective/gains.h"
 #include "lobefit/fit/search/symmetric_eigen.h"
 

@@ -1,4 +1,4 @@
-#include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/errors/sample_rows.h"
 
 #include <cmath>
 #include <numeric>

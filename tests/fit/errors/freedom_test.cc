@@ -1,11 +1,11 @@
-#include "lobefit/fit/inference/freedom.h"
+#include "lobefit/fit/errors/freedom.h"
 
 #include <cmath>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "lobefit/fit/inference/clusters.h"
+#include "lobefit/fit/errors/clusters.h"
 
 namespace lobefit {
 namespace {

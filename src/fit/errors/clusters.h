@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "lobefit/fit/inference/freedom.h"
+#include "lobefit/fit/errors/freedom.h"
 
 namespace lobefit {
 

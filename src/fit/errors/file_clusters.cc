@@ -1,4 +1,4 @@
-#include "lobefit/fit/inference/file_clusters.h"
+#include "lobefit/fit/errors/file_clusters.h"
 
 #include <algorithm>
 #include <limits>
@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 
-#include "lobefit/fit/inference/bread.h"
-#include "lobefit/fit/inference/clusters.h"
-#include "lobefit/fit/inference/sandwich.h"
+#include "lobefit/fit/errors/bread.h"
+#include "lobefit/fit/errors/clusters.h"
+#include "lobefit/fit/errors/sandwich.h"
 
 namespace lobefit {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobefit/fit/inference/clusters.h"
+#include "lobefit/fit/errors/clusters.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "lobefit/fit/inference/bread.h"
+#include "lobefit/fit/errors/bread.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/base/text/text.h"
-#include "lobefit/fit/inference/sample_rows.h"
+#include "lobefit/fit/errors/sample_rows.h"
 #include "lobefit/fit/search/solve.h"
 #include "lobefit/fit/search/symmetric_eigen.h"
 

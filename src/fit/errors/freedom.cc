@@ -1,8 +1,8 @@
-#include "lobefit/fit/inference/freedom.h"
+#include "lobefit/fit/errors/freedom.h"
 
 #include <limits>
 
-#include "lobefit/fit/inference/clusters.h"
+#include "lobefit/fit/errors/clusters.h"
 
 namespace lobefit {
 namespace {

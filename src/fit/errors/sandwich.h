@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "lobefit/base/process/parallel.h"
-#include "lobefit/fit/inference/bread.h"
+#include "lobefit/fit/errors/bread.h"
 #include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/measurement/incidence.h"
