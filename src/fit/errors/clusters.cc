@@ -91,7 +91,9 @@ void ClusterTally::Add(const Cluster& cluster) {
   freedom_.Add(cluster);
 }
 
-void ClusterTally::AddScatter(const Eigen::MatrixXd& a) { scatter_.selfadjointView<Eigen::Lower>().rankUpdate(a); }
+void ClusterTally::AddScatter(const ProductSums& of_samples) {
+  of_samples.AddTo([](Eigen::Index k) { return k; }, &scatter_);
+}
 
 void ClusterTally::Merge(const ClusterTally& other) {
   filling_ += other.filling_;

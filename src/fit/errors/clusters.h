@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "lobefit/fit/errors/freedom.h"
+#include "lobefit/fit/errors/product_sums.h"
 
 namespace lobefit {
 
@@ -48,8 +49,8 @@ class ClusterTally {
   ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters, double residual_variance);
 
   void Add(const Cluster& cluster);
-  // The scatter of samples (m x samples) whose clusters hold none.
-  void AddScatter(const Eigen::MatrixXd& a);
+  // The scatter of samples whose clusters hold none.
+  void AddScatter(const ProductSums& of_samples);
   // Adds what another tally of the same fit has; the order is that of the clusters.
   void Merge(const ClusterTally& other);
 

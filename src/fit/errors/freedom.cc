@@ -29,8 +29,8 @@ FreedomTally::FreedomTally(const Eigen::MatrixXd& numbers, std::size_t clusters,
 }
 
 Eigen::ArrayXXd FreedomTally::Squares(const Eigen::MatrixXd& a) const {
-  if (numbers_->rows() < kLeastSparse) return per_unit_ * PieceTimes(a.transpose(), dense_).array().square();
-  return per_unit_ * (sparse_.transpose() * a).transpose().array().square();
+  if (numbers_->rows() < kLeastSparse) return per_unit_ * PieceTimes(a, dense_).array().square();
+  return per_unit_ * (a * sparse_).array().square();
 }
 
 void FreedomTally::Add(const Cluster& cluster) {

@@ -41,7 +41,7 @@ class FreedomTally {
   const Eigen::MatrixXd& numbers() const { return *numbers_; }
   // Whether degrees of freedom of clusters are exact, which takes each one's scatter.
   bool exact() const { return exact_; }
-  // (z^T a)^2 of samples a (m x samples, at most kPiece), samples x numbers, in the unit.
+  // (z^T a)^2 of samples a (samples x m, at most kPiece), samples x numbers, in the unit.
   Eigen::ArrayXXd Squares(const Eigen::MatrixXd& a) const;
 
   // A number each; infinite where no sample has a part in it.

@@ -7,16 +7,17 @@
 
 namespace lobefit {
 
-Eigen::MatrixXd PieceTimes(const Eigen::Ref<const Eigen::MatrixXd>& rows, const RowMajorMatrix& matrix) {
+Eigen::MatrixXd PieceTimes(const Eigen::MatrixXd& rows, const RowMajorMatrix& matrix) {
   // Eigen's products know no wider vectors than those that every machine has.
   const Eigen::Index padded = (rows.rows() + 7) / 8 * 8;
-  Eigen::MatrixXd from(padded, rows.cols()), to(padded, matrix.cols());
-  from.topRows(rows.rows()) = rows;
-  from.bottomRows(padded - rows.rows()).setZero();
-  const auto stride = static_cast<std::size_t>(padded);
-  arrays::Contract(from.data(), matrix.data(), static_cast<std::size_t>(matrix.rows()),
-                   static_cast<std::size_t>(matrix.cols()), stride, stride, to.data());
-  to.conservativeResize(rows.rows(), Eigen::NoChange);
+  const auto n = static_cast<std::size_t>(padded), columns = static_cast<std::size_t>(matrix.cols());
+  Eigen::MatrixXd wider, to(padded, matrix.cols());
+  if (padded > rows.rows()) {
+    wider.setZero(padded, rows.cols());
+    wider.topRows(rows.rows()) = rows;
+  }
+  arrays::Contract(padded > rows.rows() ? wider.data() : rows.data(), matrix.data(),
+                   static_cast<std::size_t>(matrix.rows()), columns, n, n, to.data());
   return to;
 }
 

@@ -27,8 +27,8 @@ inline constexpr std::size_t kPiece = 256;
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// rows * matrix, of the samples of a piece.
-Eigen::MatrixXd PieceTimes(const Eigen::Ref<const Eigen::MatrixXd>& rows, const RowMajorMatrix& matrix);
+// rows * matrix, of the samples of a piece, padded with rows of zeros to a multiple of 8.
+Eigen::MatrixXd PieceTimes(const Eigen::MatrixXd& rows, const RowMajorMatrix& matrix);
 
 // 0, 1, ..., count - 1.
 std::vector<std::uint32_t> FileOrder(std::size_t count);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernel_arrays.cc"
@@ -64,19 +65,33 @@ void CurveBasisArrays(const double* cos_d, std::size_t n, std::size_t stride, do
   }
 }
 
-// The columns of ContractArrays from k on, so many at a time: a sum waits four cycles for its last product.
+// The columns of ContractArrays from k on, so many at a time: a sum waits four cycles for its last product. Rows that
+// have no part in them are left out: half of the Jacobian of a profile, whose coefficients are coordinates themselves,
+// and of what whitens many channels.
 template <std::size_t kColumns>
 HWY_INLINE void ContractTile(const double* from, const double* jacobian, std::size_t rows, std::size_t columns,
                              std::size_t k, std::size_t n, std::size_t stride, double* to) {
-  for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
-    V64 sums[kColumns];
-    for (std::size_t q = 0; q < kColumns; ++q) sums[q] = hn::Zero(D64());
-    for (std::size_t j = 0; j < rows; ++j) {
-      const V64 x = Load(from + j * stride + i);
-      for (std::size_t q = 0; q < kColumns; ++q)
-        sums[q] = hn::MulAdd(Constant(jacobian[j * columns + k + q]), x, sums[q]);
+  constexpr std::size_t kMostRows = 128;
+  std::uint32_t used[kMostRows];
+  for (std::size_t begin = 0; begin == 0 || begin < rows; begin += kMostRows) {
+    std::size_t count = 0;
+    for (std::size_t j = begin; j < rows && j < begin + kMostRows; ++j) {
+      bool has_part = false;
+      for (std::size_t q = 0; q < kColumns; ++q) has_part = has_part || jacobian[j * columns + k + q] != 0;
+      if (has_part) used[count++] = static_cast<std::uint32_t>(j);
     }
-    for (std::size_t q = 0; q < kColumns; ++q) hn::StoreU(sums[q], D64(), to + (k + q) * stride + i);
+    for (std::size_t i = 0; i < n; i += hn::Lanes(D64())) {
+      V64 sums[kColumns];
+      for (std::size_t q = 0; q < kColumns; ++q)
+        sums[q] = begin == 0 ? hn::Zero(D64()) : Load(to + (k + q) * stride + i);
+      for (std::size_t u = 0; u < count; ++u) {
+        const std::size_t j = used[u];
+        const V64 x = Load(from + j * stride + i);
+        for (std::size_t q = 0; q < kColumns; ++q)
+          sums[q] = hn::MulAdd(Constant(jacobian[j * columns + k + q]), x, sums[q]);
+      }
+      for (std::size_t q = 0; q < kColumns; ++q) hn::StoreU(sums[q], D64(), to + (k + q) * stride + i);
+    }
   }
 }
 
@@ -86,7 +101,16 @@ void ContractArrays(const double* from, const double* jacobian, std::size_t rows
   constexpr std::size_t kTile = 4;
   std::size_t k = 0;
   for (; k + kTile <= columns; k += kTile) ContractTile<kTile>(from, jacobian, rows, columns, k, n, stride, to);
-  for (; k < columns; ++k) ContractTile<1>(from, jacobian, rows, columns, k, n, stride, to);
+  switch (columns - k) {
+    case 3:
+      return ContractTile<3>(from, jacobian, rows, columns, k, n, stride, to);
+    case 2:
+      return ContractTile<2>(from, jacobian, rows, columns, k, n, stride, to);
+    case 1:
+      return ContractTile<1>(from, jacobian, rows, columns, k, n, stride, to);
+    default:
+      return;
+  }
 }
 
 // to += a * (constant + slope * array).
@@ -190,19 +214,33 @@ HWY_INLINE void AddGramTile(const double* columns, std::size_t i, std::size_t j,
   }
 }
 
+// kRows rows of the upper triangle from row i on.
+template <std::size_t kRows>
+HWY_INLINE void AddGramRows(const double* columns, std::size_t i, std::size_t count, std::size_t n, std::size_t stride,
+                            double* gram) {
+  constexpr std::size_t kColumns = 4;
+  std::size_t j = i;
+  for (; j + kColumns <= count; j += kColumns) AddGramTile<kRows, kColumns>(columns, i, j, count, n, stride, gram);
+  // One at a time the last columns took as long as three times as many.
+  switch (count - j) {
+    case 3:
+      return AddGramTile<kRows, 3>(columns, i, j, count, n, stride, gram);
+    case 2:
+      return AddGramTile<kRows, 2>(columns, i, j, count, n, stride, gram);
+    case 1:
+      return AddGramTile<kRows, 1>(columns, i, j, count, n, stride, gram);
+    default:
+      return;
+  }
+}
+
 // Adds the upper triangle of the Gram matrix of `columns` arrays to `gram`, row by row.
 void GramArrays(const double* columns, std::size_t count, std::size_t n, std::size_t stride, double* gram) {
   // As many sums as there are registers for.
-  constexpr std::size_t kRows = HWY_MAX_BYTES >= 64 ? 4 : 2, kColumns = 4;
+  constexpr std::size_t kRows = HWY_MAX_BYTES >= 64 ? 4 : 2;
   std::size_t i = 0;
-  for (; i + kRows <= count; i += kRows) {
-    std::size_t j = i;
-    for (; j + kColumns <= count; j += kColumns) AddGramTile<kRows, kColumns>(columns, i, j, count, n, stride, gram);
-    for (; j < count; ++j) AddGramTile<kRows, 1>(columns, i, j, count, n, stride, gram);
-  }
-  for (; i < count; ++i) {
-    for (std::size_t j = i; j < count; ++j) AddGramTile<1, 1>(columns, i, j, count, n, stride, gram);
-  }
+  for (; i + kRows <= count; i += kRows) AddGramRows<kRows>(columns, i, count, n, stride, gram);
+  for (; i < count; ++i) AddGramRows<1>(columns, i, count, n, stride, gram);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -140,7 +140,7 @@ TEST(FreedomOfSamples, IsThatOfAnyUnit) {
     for (int k = 0; k < 2; ++k) {
       Cluster cluster(tally.freedom());
       cluster.curvature = numbers / 2;
-      const Eigen::ArrayXXd squares = tally.freedom().Squares(unit * moves);
+      const Eigen::ArrayXXd squares = tally.freedom().Squares(unit * moves.transpose());
       cluster.scatter = unit * moves * (unit * moves).transpose();
       cluster.squares = squares.colwise().sum().transpose();
       cluster.fourths = squares.square().colwise().sum().transpose();
