@@ -7,7 +7,7 @@
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/axes.h"
 #include "lobefit/plot/style.h"
-#include "lobefit/report/panels/curve_error.h"
+#include "lobefit/report/panels/curve_interval.h"
 #include "lobefit/report/panels/panel.h"
 
 namespace lobefit {
@@ -16,8 +16,8 @@ namespace {
 constexpr int kAngles = 91;
 
 struct FresnelCurves {
-  std::vector<std::vector<double>> value, error;  // [shown channel][degree]; no error: empty
-  double high = 1, measured_to = 90;              // largest angle between a sample's direction and its half vector
+  std::vector<std::vector<double>> value, half_interval;  // [shown channel][degree]; no error: empty
+  double high = 1, measured_to = 90;  // largest angle between a sample's direction and its half vector
 };
 
 void Draw(const ReportData& data, const FresnelCurves& curves, Canvas* canvas, const Box& content) {
@@ -34,11 +34,11 @@ void Draw(const ReportData& data, const FresnelCurves& curves, Canvas* canvas, c
       const Rgb color = data.channel_colors[data.shown_channels[k]];
       std::vector<Point> line, band;
       for (int d = 0; d < kAngles; ++d) line.push_back(axes.Map(d, curves.value[k][static_cast<std::size_t>(d)]));
-      const std::vector<double>& error = curves.error[k];
-      for (std::size_t d = 0; d < error.size(); ++d)
-        band.push_back(axes.Map(static_cast<double>(d), curves.value[k][d] + 1.96 * error[d]));
-      for (std::size_t d = error.size(); d-- > 0;)
-        band.push_back(axes.Map(static_cast<double>(d), curves.value[k][d] - 1.96 * error[d]));
+      const std::vector<double>& half = curves.half_interval[k];
+      for (std::size_t d = 0; d < half.size(); ++d)
+        band.push_back(axes.Map(static_cast<double>(d), curves.value[k][d] + half[d]));
+      for (std::size_t d = half.size(); d-- > 0;)
+        band.push_back(axes.Map(static_cast<double>(d), curves.value[k][d] - half[d]));
       if (!band.empty()) canvas->Polygon(band, color, 0.2);
       canvas->Polyline(line, {color, 1.5});
     }
@@ -69,7 +69,7 @@ std::optional<Panel> FresnelPanel(const ReportData& data) {
       return result;
     };
     curves->value.push_back(curve(material.Values()));
-    curves->error.push_back(CurveError(material, curve, [&](std::size_t p, std::size_t c) {
+    curves->half_interval.push_back(HalfIntervals(material, curve, [&](std::size_t p, std::size_t c) {
       return p >= first && p < first + count && c == channel;
     }));
     most = std::max(most, *std::max_element(curves->value.back().begin(), curves->value.back().end()));

@@ -7,7 +7,7 @@
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/axes.h"
 #include "lobefit/plot/style.h"
-#include "lobefit/report/panels/curve_error.h"
+#include "lobefit/report/panels/curve_interval.h"
 #include "lobefit/report/panels/panel.h"
 
 namespace lobefit {
@@ -17,7 +17,7 @@ constexpr double kFrom = 0.1, kTo = 64;  // widths from the mean slope
 constexpr int kPoints = 120;
 
 struct ProfileCurve {
-  std::vector<double> radius, log_density, error, log_ggx;
+  std::vector<double> radius, log_density, half_interval, log_ggx;
   double measured_to = kTo;
 };
 
@@ -45,10 +45,10 @@ void Draw(const ProfileCurve& curve, Canvas* canvas, const Box& content) {
       line.push_back(at(k, curve.log_density[k]));
       ggx.push_back(at(k, curve.log_ggx[k]));
     }
-    for (std::size_t k = 0; k < curve.error.size(); ++k)
-      band.push_back(at(k, curve.log_density[k] + 1.96 * curve.error[k]));
-    for (std::size_t k = curve.error.size(); k-- > 0;)
-      band.push_back(at(k, curve.log_density[k] - 1.96 * curve.error[k]));
+    for (std::size_t k = 0; k < curve.half_interval.size(); ++k)
+      band.push_back(at(k, curve.log_density[k] + curve.half_interval[k]));
+    for (std::size_t k = curve.half_interval.size(); k-- > 0;)
+      band.push_back(at(k, curve.log_density[k] - curve.half_interval[k]));
     if (!band.empty()) canvas->Polygon(band, style::kInk, 0.2);
     if (curve.measured_to < kTo) {
       canvas->Line({axes.MapX(curve.measured_to), frame.y}, {axes.MapX(curve.measured_to), frame.bottom()},
@@ -90,7 +90,8 @@ std::optional<Panel> ProfilePanel(const ReportData& data) {
     return result;
   };
   shared->log_density = curve(material.Values());
-  shared->error = CurveError(material, curve, [&](std::size_t p, std::size_t) { return p >= first && p < end; });
+  shared->half_interval =
+      HalfIntervals(material, curve, [&](std::size_t p, std::size_t) { return p >= first && p < end; });
   const SlopeCoordinates& s = data.fitted.lobe_shapes()[lobe];
   const double a = std::exp(s.v[2]), c = std::exp(s.v[4]);
   const Samples& samples = data.measurement.samples;
