@@ -141,7 +141,9 @@ void Passes(double step_deg) {
     } else if (second == 0) {
       second = pass.seconds();
     }
-    const bool is_ggx = c.model.lobes.size() == 1 && FamilyOf(c.model.lobes[0].ndf) == Family::kGgx;
+    const Lobe& lobe = c.model.lobes[0];
+    const bool is_ggx = c.model.lobes.size() == 1 && c.model.diffuse == Diffuse::kLambert &&
+                        FamilyOf(lobe.ndf) == Family::kGgx && lobe.fresnel != Fresnel::kSchlickF82;
     const auto as_many =
         is_ggx ? of_ggx.try_emplace(pass.columns(), pass.seconds()).first : of_ggx.find(pass.columns());
     fmt::print("| {} | {:.0f} | {:.1f} | {:.1f} | {} | {} |\n", c.name, 1e9 * pass.seconds() / count,

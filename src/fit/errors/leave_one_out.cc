@@ -86,7 +86,7 @@ void LeaveOneOut::AddSeries(const WhitenedPiece& piece) {
   while (true) {
     DotRows(term_, term_, border, &of_term);
     DotRows(y_, y_, border, &of_y);
-    if ((of_term <= 1e-32 * of_y).all()) return;
+    if (!(of_term > 1e-32 * of_y).any()) return;  // nor where a number is not finite
     next_.setZero(padded, border);
     for (Eigen::Index c = 0; c < channels; ++c) {
       const Eigen::MatrixXd& rows = piece.rows[static_cast<std::size_t>(c)];

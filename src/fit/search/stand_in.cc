@@ -11,9 +11,9 @@ namespace {
 constexpr int kStepsWithin = 12;
 constexpr double kShareOfTolerance = 0.3;
 // Where the whole's cost does not fall the stand-in promised too much: its next round is damped, as Marquardt's steps, and
-// no later one goes with less than a tenth of that. Without a least every second round failed again on full tables of
-// aluminium, teflon and a green fabric, 3 of 8, 4 of 15 and 7 of 20; with it 1 of 6, 2 of 8 and 1 of 20.
-constexpr double kFirstDamping = 0.1, kMostDamping = 1e3;
+// those after it ever less. Without any from the third on, 3 of 8 rounds failed on a full table of aluminium, 4 of 15 and
+// 7 of 20 on those of teflon and a green fabric; so 2 of 6, 2 of 13 and 3 of 12.
+constexpr double kFirstDamping = 0.1, kMostDamping = 1e3, kLeastDamping = 1e-4;
 // A round that gains no more than this share of the cost is the last where the conditions of a minimum hold: on full
 // tables of a gold layer, a black phenolic and a marble 12 to 18 more gained 1e-4 together.
 constexpr double kSettled = 3e-6;
@@ -60,7 +60,7 @@ Descent DescendByStandIn(const BoundedObjective& whole, const BoundedObjective& 
   within.function_tolerance = kShareOfTolerance * options.function_tolerance;
   Eigen::MatrixXd gram;
   Eigen::VectorXd gradient;
-  double damping = 0, least_damping = 0;
+  double damping = 0;
   const auto is_minimum = [&] {
     return IsMinimum(whole, at.u, at.cost, at.gram, at.gradient, options.function_tolerance, nullptr);
   };
@@ -78,14 +78,13 @@ Descent DescendByStandIn(const BoundedObjective& whole, const BoundedObjective& 
     const double cost = whole.evaluate(u, &gram, &gradient);
     if (!(cost < at.cost)) {
       damping = std::max(kFirstDamping, 10 * damping);
-      least_damping = damping / 10;
       continue;
     }
     // A small decrease under strong damping says nothing of the minimum.
     const bool free = damping <= kFirstDamping;
     const double gain = at.cost - cost;
     const bool last = free && gain <= options.function_tolerance * at.cost;
-    damping = std::max(damping / 3, least_damping);
+    damping = damping > kLeastDamping ? damping / 3 : 0;
     at.u = u;
     at.cost = cost;
     at.gram.swap(gram);

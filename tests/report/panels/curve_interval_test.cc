@@ -17,6 +17,7 @@ constexpr double kAlphaFreedom = 3, kF0Freedom = 40;
 // alpha_x and f0 of the first channel have errors, which are not correlated.
 Material WithErrors() {
   Material material = test::MakeMaterial(1, false);
+  material.covariance_names.clear();
   const std::vector<Parameter> parameters = Parameters(material.model);
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const bool is_alpha = parameters[p].json_name == "alpha_x", is_f0 = parameters[p].json_name == "f0";
