@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "lobefit/measurement/measurement.h"
@@ -14,7 +15,10 @@ namespace lobefit {
 class ChannelColor {
  public:
   explicit ChannelColor(const Channels& channels);
+  explicit ChannelColor(std::vector<std::array<double, 3>> weights) : weights_(std::move(weights)) {}
   std::array<double, 3> Linear(const double* values) const;
+  // What each channel gives to R, G and B.
+  const std::vector<std::array<double, 3>>& weights() const { return weights_; }
 
  private:
   std::vector<std::array<double, 3>> weights_;  // one a channel

@@ -163,16 +163,21 @@ IsotropicAlbedo::IsotropicAlbedo(double alpha, int side) {
     const double mu = std::max(1e-3, static_cast<double>(node) / (kNodes - 1));
     const Vec3 v = {std::sqrt(1 - mu * mu), 0, mu};
     const EllipsoidVndfSampler sampler({alpha, alpha, 0, 0, 0}, v);
+    const double root = Root(v, alpha, alpha);
     double a = 0, b = 0;
-    for (int k = 0; k < side * side; ++k) {
-      const Vec3 m = sampler.Sample((k % side + 0.5) / side, (k / side + 0.5) / side);
-      const Vec3 l = Reflect(v, m);
-      if (!(l.z > 0)) continue;
-      // G2 / G1 of the viewer.
-      const double weight = (1 + Root(v, alpha, alpha)) / (Root(v, alpha, alpha) + Root(l, alpha, alpha));
-      const double schlick = Power5(1 - Dot(v, m));
-      a += weight * (1 - schlick);
-      b += weight * schlick;
+    // Of turns u and 1 - u the normals mirror each other in the plane of v: half of them are drawn.
+    for (int row = 0; 2 * row < side; ++row) {
+      const double both = 2 * row + 1 == side ? 1 : 2;
+      for (int column = 0; column < side; ++column) {
+        const Vec3 m = sampler.Sample((column + 0.5) / side, (row + 0.5) / side);
+        const Vec3 l = Reflect(v, m);
+        if (!(l.z > 0)) continue;
+        // G2 / G1 of the viewer.
+        const double weight = both * (1 + root) / (root + Root(l, alpha, alpha));
+        const double schlick = Power5(1 - Dot(v, m));
+        a += weight * (1 - schlick);
+        b += weight * schlick;
+      }
     }
     a_.push_back(a / (side * side));
     b_.push_back(b / (side * side));

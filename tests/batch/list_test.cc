@@ -58,6 +58,17 @@ TEST(Manifest, RefusesWithLineAndCure) {
     EXPECT_THAT([text = text] { Parse(text); }, ThrowsMessage<InputError>(HasSubstr(message))) << text;
 }
 
+// A pattern of half a million folders took gigabytes and did not end.
+TEST(Manifest, NamesAreNoLongerThanFilesMayHave) {
+  std::string pattern = "file\na";
+  for (int k = 0; k < 3000; ++k) pattern += "/*";
+  EXPECT_THAT([&] { Parse(pattern + "\n"); }, ThrowsMessage<InputError>(HasSubstr("has 6001 bytes")));
+  // A list of names may be longer.
+  std::string list = "file,id\n";
+  for (int k = 0; k < 1000; ++k) list += "scan_" + std::to_string(k) + ".csv;";
+  EXPECT_EQ(Parse(list + ",a\n").tasks.at(0).members.size(), 1000U);
+}
+
 TEST(Manifest, SeriesAreNamedByWhatTheirNamesShare) {
   const std::pair<const char*, const char*> cases[] = {
       {"blue/scan_*.csv", "blue/scan"},     {"blue/*.csv", "blue"},

@@ -1,5 +1,8 @@
 #include "lobefit/material/json.h"
 
+#include <chrono>
+#include <string>
+
 #include "tests/support/schema.h"
 #include "tests/support/synthetic.h"
 #include <gtest/gtest.h>
@@ -71,6 +74,24 @@ TEST(MaterialJson, ReadsAProfileBack) {
     material.parameters[10].values = {beyond};
     EXPECT_THROW(MaterialFromJson(ToJson(material), "m.json"), InputError) << beyond;
   }
+}
+
+// Each member was compared with all before it: 100 000 took half a minute.
+TEST(MaterialJson, RefusesACrowdOfMembers) {
+  std::string text = R"({"format": "lobefit material")";
+  for (int k = 0; k < 100000; ++k) text += ", \"k" + std::to_string(k) + "\": {\"a:\\\"b\": 0}";
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    MaterialFromJson(text + "}", "m.json");
+    ADD_FAILURE() << "was read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("more than 1000 members"), std::string::npos) << error.what();
+  }
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 2);
+  // Strings may hold anything, and many objects a few members each.
+  Material material = FittedMaterial();
+  material.source.file = std::string(5000, ':') + "\"\\{[";
+  EXPECT_EQ(MaterialFromJson(ToJson(material), "m.json").source.file, material.source.file);
 }
 
 TEST(MaterialJson, RefusesWhatIsNotAMaterial) {

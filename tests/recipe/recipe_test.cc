@@ -106,6 +106,28 @@ TEST(Recipe, NamesComeBackWithQuotesAndControlCharacters) {
   EXPECT_EQ(ParseRecipe(ToToml(recipe), "b.toml").name, recipe.name);
 }
 
+TEST(Recipe, AKeyOfManyPartsIsRefusedWithItsLine) {
+  const auto dotted = [](std::size_t parts) {
+    std::string key = "a";
+    for (std::size_t k = 0; k < parts; ++k) key += ".a";
+    return key;
+  };
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      ParseRecipe(text, "r.toml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  constexpr std::size_t kMany = 400000;
+  EXPECT_THAT(message("name = \"x\"\n" + dotted(kMany) + " = 1\n"), testing::StartsWith("r.toml:2: the line has more"));
+  EXPECT_THAT(message("[" + dotted(kMany) + "]"), testing::StartsWith("r.toml:1: the line has more"));
+  EXPECT_THAT(message("loss = { " + dotted(kMany) + " = 1 }"), testing::StartsWith("r.toml:1: the line has more"));
+  // What is read goes as deep without a fault.
+  EXPECT_THAT(message(dotted(9000) + " = 1"), testing::HasSubstr("unknown key 'a'"));
+}
+
 TEST(Recipe, AFreeScaleComesBackAndIsCheckedAgainstEnergy) {
   const Recipe recipe = ParseRecipe("name = \"x\"\nscale = \"free\"\n[[lobe]]\nfresnel = \"schlick\"\n", "a.toml");
   EXPECT_TRUE(recipe.free_scale);

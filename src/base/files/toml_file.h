@@ -27,10 +27,28 @@ struct TomlFile {
 
   // Throws InputError with the line for text that is not TOML.
   toml::table Parse(std::string_view text) const {
+    CheckKeyLengths(text);
     try {
       return toml::parse(text);
     } catch (const toml::parse_error& error) {
       Fail(error.source(), Excerpt(error.description(), 200));
+    }
+  }
+
+  // toml++ descends into a dotted key part by part: from some 40 000 parts on its stack ends the program. A key ends with
+  // its line.
+  void CheckKeyLengths(std::string_view text) const {
+    constexpr std::ptrdiff_t kMostPoints = 10000;
+    std::size_t number = 1;
+    for (std::size_t begin = 0; begin < text.size(); ++number) {
+      const std::string_view line = text.substr(begin, text.find('\n', begin) - begin);
+      if (std::count(line.begin(), line.end(), '.') > kMostPoints) {
+        throw InputError(
+            fmt::format("{}:{}: the line has more than {} points, which no key may have; write long arrays "
+                        "on several lines",
+                        name, number, kMostPoints));
+      }
+      begin += line.size() + 1;
     }
   }
 

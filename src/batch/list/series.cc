@@ -17,6 +17,8 @@ namespace {
 
 using Path = std::filesystem::path;
 constexpr std::string_view kPattern = "*?[";
+// PATH_MAX of Linux: no file has a longer name, and a pattern of half a million folders takes gigabytes.
+constexpr std::size_t kLongestName = 4096;
 
 // The name without what a pattern leaves open, and without keys.
 std::string_view Fixed(std::string_view name) {
@@ -67,7 +69,7 @@ std::string Listed(const Path& file, const Path& folder, bool relative) {
 std::vector<std::string> ListSeries(const std::string& cell, const Path& folder, bool any_rows) {
   std::error_code error;
   std::vector<std::string> parts;
-  if (std::filesystem::exists(folder / cell, error)) {
+  if (cell.size() <= kLongestName && std::filesystem::exists(folder / cell, error)) {
     parts = {cell};
   } else {
     for (const std::string_view part : Split(cell, ';')) {
@@ -76,6 +78,10 @@ std::vector<std::string> ListSeries(const std::string& cell, const Path& folder,
   }
   std::vector<std::string> members;
   for (const std::string& part : parts) {
+    if (part.size() > kLongestName) {
+      throw InputError(fmt::format("'{}' has {} bytes; the name of a file has at most {}", Excerpt(part, 80),
+                                   part.size(), kLongestName));
+    }
     const FileSpec spec = ParseFileSpec((folder / part).string());
     const bool relative = Path(part).is_relative(), there = std::filesystem::exists(spec.path, error),
                is_folder = std::filesystem::is_directory(spec.path, error);

@@ -107,6 +107,9 @@ void AddPriors(const Problem& problem, const Layout& layout, double cost, const 
   const double of_gains = gains != nullptr ? gains->PriorSum() : 0.0;
   const double variance = (2 * cost - of_gains) / static_cast<double>(problem.size() * problem.channels());
   bread->residual_variance = variance;
+  const bool any = gains != nullptr || std::any_of(layout.coordinates().begin(), layout.coordinates().end(),
+                                                   [](const Coordinate& coordinate) { return coordinate.observed; });
+  if (!any) return;
   bread->prior_of_gains = bread->prior_of_coordinates = Eigen::MatrixXd::Zero(bread->size(), bread->size());
   for (std::size_t k = 0; gains != nullptr && k < gains->size(); ++k) {
     bread->lean.push_back(bread->whitening.transpose() * links[k].link / links[k].curvature);

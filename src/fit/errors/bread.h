@@ -33,6 +33,7 @@ struct Bread {
   // coordinates when the gain follows them. The prior of a gain is one more row, its column the root of the precision.
   std::vector<Eigen::VectorXd> lean;  // [gain]
   // W^T P W of priors that stand for observations: what they add to the filling, whose unit is a residual's variance.
+  // Both empty where there is none: of 800 channels each would take 21 MB of zeros.
   Eigen::MatrixXd prior_of_gains, prior_of_coordinates;
   double residual_variance = 0;  // mean square of the weighed residuals
   std::vector<bool> at_bound;    // [coordinate] held at a bound: the cost would go on falling beyond it

@@ -9,6 +9,7 @@
 
 #include "lobefit/fit/errors/bread.h"
 #include "lobefit/fit/errors/clusters.h"
+#include "lobefit/fit/errors/entries.h"
 #include "lobefit/fit/errors/sandwich.h"
 
 namespace lobefit {
@@ -53,21 +54,16 @@ FileErrors EstimateErrorsByFile(const Problem& problem, const Layout& layout, co
   if (file_count < 2 || both_count == file_count) return errors;
 
   const Bread bread = FactorBread(problem, layout, u, pool);
-  const Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
-  std::vector<bool> known;
-  Eigen::MatrixXd entries = jacobian;
-  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
-    bool determined = jacobian.row(row).allFinite();
-    for (std::size_t k = 0; k < layout.size(); ++k)
-      determined = determined && !(bread.undetermined[k] && jacobian(row, static_cast<Eigen::Index>(k)) != 0);
-    known.push_back(determined);
-    if (!determined) entries.row(row).setZero();
-  }
-  entries *= bread.whitening;
-  const Eigen::MatrixXd numbers = UnitColumns(entries);
+  const Entries entries = EntriesOf(layout, u, bread);
+  const Eigen::MatrixXd numbers = UnitColumns(Eigen::MatrixXd(entries.rows));
   const auto one_way = [&](const Incidences& groups) {
     const Filling filling = FillSandwich(problem, layout, u, bread, groups, numbers, pool);
-    return OneWay{(entries * filling.clusters).cwiseProduct(entries).rowwise().sum(), filling.clusters_freedom};
+    OneWay way = {Eigen::VectorXd(entries.rows.rows()), filling.clusters_freedom};
+    for (Eigen::Index row = 0; row < entries.rows.rows(); ++row) {
+      const Eigen::SparseVector<double> entry = entries.rows.row(row).transpose();
+      way.variance(row) = entry.dot(filling.clusters * entry);
+    }
+    return way;
   };
   OneWay total = one_way(by_file);
   if (both_count > incidences.wi.size()) {
@@ -76,11 +72,12 @@ FileErrors EstimateErrorsByFile(const Problem& problem, const Layout& layout, co
     total.variance = sum.cwiseMax(total.variance).cwiseMax(incidence.variance);
     total.freedom = total.freedom.cwiseMin(incidence.freedom);
   }
-  for (std::size_t row = 0; row < known.size(); ++row) {
-    const auto r = static_cast<Eigen::Index>(row);
-    errors.variance.push_back(known[row] ? total.variance(r) : std::numeric_limits<double>::quiet_NaN());
-    errors.freedom.push_back(total.freedom(r));
+  for (Eigen::Index row = 0; row < entries.rows.rows(); ++row) {
+    errors.variance.push_back(total.variance(row));
+    errors.freedom.push_back(total.freedom(row));
   }
+  for (const Eigen::Index row : entries.without_error)
+    errors.variance[static_cast<std::size_t>(row)] = std::numeric_limits<double>::quiet_NaN();
   return errors;
 }
 

@@ -320,6 +320,15 @@ KernelModel Layout::ToKernel(const double* u) const {
   return kernel;
 }
 
+std::size_t Layout::DropShapes(KernelModel* kernel) const {
+  if (first_angle_ < shape_size_) return 0;
+  for (KernelLobe& lobe : kernel->lobes) {
+    lobe.columns = 0;
+    lobe.jacobian.clear();
+  }
+  return shape_size_;
+}
+
 std::vector<double> Layout::FromShapes(const std::vector<Ellipsoid>& shapes) const {
   std::vector<double> u(size(), 0.0);
   for (std::size_t l = 0; l < shapes_.size(); ++l) {
@@ -354,11 +363,13 @@ std::vector<int> Layout::CoordinatesOfColumns(std::size_t c) const {
 }
 
 template <class Add>
-void Layout::GatherEntries(const KernelSums& sums, const Add& add, Eigen::VectorXd* gradient) const {
+void Layout::GatherEntries(const KernelSums& sums, std::size_t dropped, const Add& add,
+                           Eigen::VectorXd* gradient) const {
   gradient->setZero(static_cast<Eigen::Index>(size()));
   for (std::size_t c = 0; c < channels_; ++c) {
     // -2 for the residual.
     std::vector<int> index = CoordinatesOfColumns(c);
+    index.erase(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(dropped));
     index.push_back(-2);
     const double* entry = sums.gram[c].data();
     for (std::size_t i = 0; i < index.size(); ++i) {
@@ -385,10 +396,11 @@ void Layout::Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::Vec
     // A shared amplitude may meet itself in one channel only on the diagonal.
     if (i != j) (*hessian)(j, i) += value;
   };
-  GatherEntries(sums, add, gradient);
+  GatherEntries(sums, 0, add, gradient);
 }
 
-void Layout::Gather(const KernelSums& sums, ArrowMatrix* hessian, Eigen::VectorXd* gradient) const {
+void Layout::Gather(const KernelSums& sums, ArrowMatrix* hessian, Eigen::VectorXd* gradient,
+                    std::size_t dropped) const {
   *hessian = ArrowMatrix(ArrowShapeOf(*this));
   // Place of each coordinate in its part; below 0: in the border, from -1 on.
   std::vector<Eigen::Index> place(size());
@@ -410,7 +422,7 @@ void Layout::Gather(const KernelSums& sums, ArrowMatrix* hessian, Eigen::VectorX
       hessian->across[c](p < 0 ? -1 - p : -1 - q, p < 0 ? q : p) += value;
     }
   };
-  GatherEntries(sums, add, gradient);
+  GatherEntries(sums, dropped, add, gradient);
 }
 
 std::vector<std::vector<double>> Layout::GatherScores(const std::vector<std::vector<double>>& scores) const {

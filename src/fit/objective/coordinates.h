@@ -61,6 +61,9 @@ class Layout {
 
   // The model at `u`, with the Jacobians of the shapes.
   KernelModel ToKernel(const double* u) const;
+  // Leaves out the columns of the lobes' shapes for what moves amplitudes only, whose derivatives took a quarter of a
+  // pass over many channels. Returns how many columns of a channel are gone: none with an alignment or half angles.
+  std::size_t DropShapes(KernelModel* kernel) const;
 
   // Coordinates of lobe shapes given as ellipsoids, Fresnel parameters and albedos at the start that the recipe or the
   // parameter table gives; fixed ones are ignored, all are moved into the bounds.
@@ -81,8 +84,8 @@ class Layout {
 
   // Gauss-Newton matrix J^T J and gradient J^T r in solver coordinates from the sums over samples.
   void Gather(const KernelSums& sums, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
-  // The same, linear in the channels.
-  void Gather(const KernelSums& sums, ArrowMatrix* hessian, Eigen::VectorXd* gradient) const;
+  // The same, linear in the channels; zero for the first `dropped` coordinates (DropShapes).
+  void Gather(const KernelSums& sums, ArrowMatrix* hessian, Eigen::VectorXd* gradient, std::size_t dropped = 0) const;
   // Scores of the kernel (shape columns, then [channel][linear]) as scores of the solver's coordinates, arrays by
   // coordinate.
   std::vector<std::vector<double>> GatherScores(const std::vector<std::vector<double>>& scores) const;
@@ -120,7 +123,7 @@ class Layout {
   // Calls add(channel, i, j, value) for each entry of the upper triangles of the channels, and of the priors (of
   // shapes), that is one of J^T J, and sums up the gradient.
   template <class Add>
-  void GatherEntries(const KernelSums& sums, const Add& add, Eigen::VectorXd* gradient) const;
+  void GatherEntries(const KernelSums& sums, std::size_t dropped, const Add& add, Eigen::VectorXd* gradient) const;
   void AddShape(std::size_t lobe, const std::vector<Parameter>& parameters, std::size_t first_parameter);
   void AddProfile(std::size_t lobe, const std::vector<Parameter>& parameters, Shape* shape);
   // The mean over the recipe's aperture, and bounds that keep the lobe as wide as its cubature can take.

@@ -33,8 +33,8 @@ constexpr std::size_t kDescentsOfSeveral = 5;
 // Descends from the best-ranked starts, to their minima if these are the `last` samples.
 std::vector<DistinctMinimum> Descend(const Problem& problem, const Layout& layout, const Samples& samples,
                                      const FitOptions& options, bool last, ThreadPool* pool) {
-  std::vector<Start> starts = RankedStarts(problem, layout, samples, pool);
   const std::size_t descents = options.starts * (layout.recipe().model.lobes.size() > 1 ? kDescentsOfSeveral : 1);
+  std::vector<Start> starts = RankedStarts(problem, layout, samples, descents, pool);
   if (starts.size() > descents) starts.resize(descents);
   std::vector<DistinctMinimum> minima(starts.size());
   const auto descend = [&](std::size_t k, const std::vector<double>& u, const SolveOptions& solve) {

@@ -37,7 +37,9 @@ std::vector<double> LinearisedWeights(const Samples& samples, Metric metric, con
 // parameters only, one step (exact where the metric is quadratic in f_r). Returns the cost before the step.
 double StepLinear(const Problem& problem, const Layout& layout, std::vector<double>* u, ThreadPool* pool);
 
-// All candidates (for several lobes, ordered tuples of them), best first, with their linear parameters solved for.
-std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, const Samples& samples, ThreadPool* pool);
+// Candidates (for several lobes, ordered tuples of them), best first, with their linear parameters solved for: all, but
+// of many channels only those from which the `wanted` best come.
+std::vector<Start> RankedStarts(const Problem& problem, const Layout& layout, const Samples& samples,
+                                std::size_t wanted, ThreadPool* pool);
 
 }  // namespace lobefit

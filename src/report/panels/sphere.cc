@@ -28,7 +28,40 @@ void FindLit(int row, int size, LitRow* lit) {
   }
 }
 
+// Whether f_r is linear, but for a constant, in the parameters that differ between channels.
+bool IsLinearInChannels(const Model& model) {
+  const auto linear = [](const Lobe& lobe) {
+    return lobe.fresnel == Fresnel::kSchlick || lobe.fresnel == Fresnel::kCurve || lobe.fresnel == Fresnel::kNone;
+  };
+  return std::all_of(model.lobes.begin(), model.lobes.end(), linear) && !IsDirectional(model.diffuse);
+}
+
 }  // namespace
+
+ColoredFit InColors(const Material& material, const ChannelColor& to_color) {
+  const std::size_t channels = material.channels.size();
+  const std::vector<std::array<double, 3>>& weights = to_color.weights();
+  std::array<double, 3> sums = {0, 0, 0};
+  for (const std::array<double, 3>& weight : weights) {
+    for (std::size_t k = 0; k < 3; ++k) sums[k] += weight[k];
+  }
+  const bool has_means = *std::min_element(sums.begin(), sums.end()) > 0;
+  if (channels <= 3 || material.sel || !has_means || !IsLinearInChannels(material.model))
+    return {FittedFunction(material), to_color};
+  Material colored = material;
+  colored.channels = {"R", "G", "B"};
+  const std::vector<Parameter> parameters = Parameters(material.model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (!parameters[i].per_channel) continue;
+    std::vector<double>& means = colored.parameters[i].values;
+    means.assign(3, 0.0);
+    for (std::size_t c = 0; c < channels; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) means[k] += weights[c][k] / sums[k] * material.parameters[i].values[c];
+    }
+  }
+  return {FittedFunction(colored),
+          ChannelColor(std::vector<std::array<double, 3>>{{sums[0], 0, 0}, {0, sums[1], 0}, {0, 0, sums[2]}})};
+}
 
 ShownBrdf Shown(const FittedFunction& fitted) {
   return [&fitted](const DirectionArrays& directions, std::vector<std::vector<double>>* f_r,

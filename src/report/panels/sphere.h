@@ -42,6 +42,15 @@ using ShownBrdf = std::function<void(const DirectionArrays& directions, std::vec
 ShownBrdf Shown(const FittedFunction& fitted);
 ShownBrdf Shown(const IsotropicLookup& lookup, std::size_t channels);
 
+// A fit of more channels than a picture has colours, as one of R, G and B: of Fresnel terms and diffuse parts that are
+// linear in what differs between channels a colour is that of a material with the colours' mean parameters. Of 800
+// channels each direction took 800 Fresnel terms, and a report 10 s. Any other fit as it is.
+struct ColoredFit {
+  FittedFunction function;
+  ChannelColor to_color;
+};
+ColoredFit InColors(const Material& material, const ChannelColor& to_color);
+
 // Black, all known.
 LitSphere DarkSphere(int size);
 // Whether nearly all of the sphere is known.

@@ -75,7 +75,8 @@ void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
 std::optional<Panel> SpherePanel(const ReportData& data) {
   if (data.material.model.lobes.empty()) return std::nullopt;
   const ChannelColor to_color(data.measurement.channels);
-  const ShownBrdf fitted = Shown(data.fitted);
+  const ColoredFit colored = InColors(data.material, to_color);
+  const ShownBrdf fitted = Shown(colored.function);
   const std::vector<LitRow> rows = LitRows(kLightSize);
   SlopeCoordinates lobe = data.fitted.lobe_shapes()[0];
   // Where a lobe falls by less than the square of the distance most of its light lies far out.
@@ -93,8 +94,8 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     // A narrow lobe in a sparse table leaves holes and rings under the sky: that is no measured appearance.
     spheres->sky = spheres->measured && IsCovered(spheres->sphere[2]);
   }
-  spheres->sphere[1] = LightSphere(fitted, to_color, data.channels(), rows);
-  spheres->sphere[3] = SkySphere(fitted, lobe, to_color, data.channels(),
+  spheres->sphere[1] = LightSphere(fitted, colored.to_color, colored.function.channels(), rows);
+  spheres->sphere[3] = SkySphere(fitted, lobe, colored.to_color, colored.function.channels(),
                                  spheres->sky ? kSkySamples : kSkySamplesOfAModel, data.threads);
   // One exposure for a pair: the measured sphere sets it.
   spheres->exposure = {SphereExposure(spheres->sphere[spheres->measured ? 0 : 1]),

@@ -103,14 +103,23 @@ TEST(CsvMarks, AWavelengthThatWandersIsOneChannel) {
 
 TEST(CsvMarks, AnglesThatNamesOrUnitsBelie) {
   std::string radians = "theta_i,phi_i,theta_o,phi_o,f\n", exchanged = radians, mixed = radians;
+  std::string viewer = "theta_i,theta_o,f\n", light = viewer, narrow = viewer, surface = viewer;
   for (int k = 0; k < 12; ++k) {
     radians += "0.5,0," + std::to_string(0.1 * k) + "," + std::to_string(0.5 * k) + ",1\n";
     exchanged += "30,0," + std::to_string(30 * k) + "," + std::to_string(5 * k) + ",1\n";
     mixed += "30,0," + std::to_string(5 * k) + "," + std::to_string(0.5 * k) + ",1\n";
+    viewer += "30," + std::to_string(0.1 * k) + ",1\n";
+    light += std::to_string(0.1 * k) + ",30,1\n";
+    surface += "60," + std::to_string(15 * k) + ",1\n";
+    narrow += "30," + std::to_string(0.05 * k) + ",1\n";
   }
   EXPECT_TRUE(HasRemark(ReadText(radians), "are they radians? --angle-unit rad"));
   EXPECT_TRUE(HasRemark(ReadText(exchanged), "are the names of polar angle and azimuth exchanged?"));
   EXPECT_TRUE(HasRemark(ReadText(mixed), "are the azimuths radians?"));
+  EXPECT_TRUE(HasRemark(ReadText(viewer), "theta_o only to 1.1: is it in radians?"));
+  EXPECT_TRUE(HasRemark(ReadText(light), "theta_i only to 1.1: is it in radians?"));
+  EXPECT_TRUE(HasRemark(ReadText(surface), "are angles counted from the surface?"));
+  EXPECT_FALSE(HasRemark(ReadText(narrow), "radians"));  // about the normal
 }
 
 TEST(CsvMarks, LimitsOfDetectionAndBrackets) {

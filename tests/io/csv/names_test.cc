@@ -72,6 +72,8 @@ TEST(CsvNames, ThePolarAngleOfTheViewer) {
                            "VZA",
                            "view zenith",
                            "Scatter angle",
+                           "detection angle (deg)",
+                           "AOS",
                            "viewing angle",
                            "Angle of reflection",
                            "zenith_r",

@@ -22,13 +22,13 @@ constexpr std::array<std::string_view, 28> kLight = {
     "incidenza", "einfall", "einfalls", "illumination", "illum",        "illuminating", "light",
     "source",    "src",     "lamp",     "laser",        "sun",          "solar",        "l",
     "input",     "ill",     "0",        "incid",        "einfallender", "beleuchtung",  "illumin"};
-constexpr std::array<std::string_view, 49> kViewer = {
-    "o",    "out",      "outgoing",    "r",          "refl",     "reflected", "reflection", "reflexion",   "s",
-    "scat", "scatter",  "scattered",   "scattering", "sca",      "v",         "view",       "viewing",     "viewer",
-    "obs",  "observer", "observation", "observed",   "e",        "em",        "emission",   "emergence",   "emergent",
-    "exit", "exitance", "exitant",     "exiting",    "detector", "det",       "d",          "receiver",    "receive",
-    "rec",  "sensor",   "camera",      "cam",        "output",   "ausfall",   "diffusion",  "riflessione", "rcv",
-    "rcvr", "recv",     "sens",        "reflechi"};
+constexpr std::array<std::string_view, 51> kViewer = {
+    "o",    "out",      "outgoing",    "r",          "refl",      "reflected", "reflection", "reflexion",   "s",
+    "scat", "scatter",  "scattered",   "scattering", "sca",       "v",         "view",       "viewing",     "viewer",
+    "obs",  "observer", "observation", "observed",   "e",         "em",        "emission",   "emergence",   "emergent",
+    "exit", "exitance", "exitant",     "exiting",    "detector",  "det",       "d",          "receiver",    "receive",
+    "rec",  "sensor",   "camera",      "cam",        "output",    "ausfall",   "diffusion",  "riflessione", "rcv",
+    "rcvr", "recv",     "sens",        "reflechi",   "detection", "detected"};
 constexpr std::array<std::string_view, 11> kRelative = {"relative", "rel",     "delta",   "diff", "difference", "d",
                                                         "between",  "relatif", "relativ", "dif",  "relatieve"};
 bool Has(const NameList& words, std::initializer_list<std::string_view> any) {

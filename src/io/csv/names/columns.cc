@@ -17,7 +17,7 @@ struct Synonym {
   ColumnRole role;
   Coordinate coordinate = Coordinate::kThetaI;
 };
-constexpr std::array<Synonym, 53> kSynonyms = {{
+constexpr std::array<Synonym, 54> kSynonyms = {{
     {"aoi", ColumnRole::kCoordinate, Coordinate::kThetaI},
     {"incidence", ColumnRole::kCoordinate, Coordinate::kThetaI},
     {"incident", ColumnRole::kCoordinate, Coordinate::kThetaI},
@@ -40,6 +40,7 @@ constexpr std::array<Synonym, 53> kSynonyms = {{
     {"reflexionswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
     {"aor", ColumnRole::kCoordinate, Coordinate::kThetaO},
     {"aov", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"aos", ColumnRole::kCoordinate, Coordinate::kThetaO},
     {"vaa", ColumnRole::kCoordinate, Coordinate::kPhiO},
     {"oaa", ColumnRole::kCoordinate, Coordinate::kPhiO},
     {"raa", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
@@ -130,9 +131,9 @@ constexpr std::array<std::string_view, 55> kIgnored = {"index",
                                                        "background"};
 
 // Short names of angles that mean nothing else.
-constexpr std::array<std::string_view, 17> kAngleShorthands = {"aoi",  "aor",    "aov",      "sza",       "iza", "saa",
-                                                               "iaa",  "vza",    "oza",      "vaa",       "oaa", "raa",
-                                                               "dphi", "dtheta", "dazimuth", "aspecular", "psi"};
+constexpr std::array<std::string_view, 18> kAngleShorthands = {"aoi", "aor",  "aos",    "aov",      "sza",       "iza",
+                                                               "saa", "iaa",  "vza",    "oza",      "vaa",       "oaa",
+                                                               "raa", "dphi", "dtheta", "dazimuth", "aspecular", "psi"};
 
 // "pol", "source polarization", "analyzer angle (deg)": what tells rows of the same directions apart.
 bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {

@@ -29,6 +29,16 @@ std::optional<std::string> CheckRadians(const Range& theta_i, const Range& theta
     return "all polar angles are below 1.6 degrees" + std::string(phi ? " and all azimuths within 6.3" : "") +
            ": are they radians? --angle-unit rad";
   }
+  // Of one polar angle alone: it moves through more than 57 degrees if these are radians, and through one if they are not.
+  const auto one_alone = [](const Range& angle, const Range& other, const std::string& name) -> std::string {
+    if (!(Size(other) >= 10 && Size(angle) < 1.6 && angle.second - angle.first > 1)) return "";
+    return "the other polar angle runs to " + Short(Size(other)) + " degrees, but " + name + " only to " +
+           Short(Size(angle)) + ": is it in radians? Write the unit into its name, or use --columns \"" + name +
+           " (rad)=NAME\"";
+  };
+  for (const std::string& remark : {one_alone(theta_o, theta_i, "theta_o"), one_alone(theta_i, theta_o, "theta_i")}) {
+    if (!remark.empty()) return remark;
+  }
   if (phi && Size(theta_o) > 6.3 && azimuths_small && phi->second - phi->first > 1.5) {
     return "polar angles run to " + Short(Size(theta_o)) + " degrees, but azimuths only to " + Short(Size(*phi)) +
            ": are the azimuths radians? Write the unit into their names, or use --columns \"phi_o (rad)=NAME\"";
@@ -52,6 +62,12 @@ std::vector<std::string> FindImplausibleAngles(const StatedAngles& angles, std::
                       Short(Size(*phi)) +
                       ": are the names of polar angle and azimuth exchanged? --columns theta_o=NAME," + phi_name +
                       "=NAME says which is which");
+  }
+  // In a plane from one side of the surface to the other, through the normal at 90.
+  if (!phi && !phi_i && theta_o->first >= 0 && theta_o->first < 80 && theta_o->second > 100) {
+    remarks.push_back("theta_o runs from " + Short(theta_o->first) + " to " + Short(theta_o->second) +
+                      " degrees without an azimuth, and directions beyond 90 are set aside: are angles counted from "
+                      "the surface? --columns \"elevation_i=NAME,elevation_o=NAME\"");
   }
   const bool still = theta_i->second - theta_i->first < 1e-9, moves = phi_i && phi_i->second - phi_i->first > 5;
   // At another angle a sample was turned under the light, as it should be.

@@ -14,8 +14,10 @@ namespace lobefit {
 using StatedAngles = std::map<std::string, std::pair<double, double>>;
 
 // A remark, with the option that cures it, for each of these that holds:
-// - every polar angle is below 1.6 degrees and every azimuth within 6.3 (radians); or azimuths alone are;
-// - polar angles run beyond 100 degrees beside azimuths within 90, or the light stands still in theta and moves in phi.
+// - every polar angle is below 1.6 degrees and every azimuth within 6.3 (radians); or azimuths alone are, or one of the
+//   two polar angles;
+// - polar angles run beyond 100 degrees beside azimuths within 90, or the light stands still in theta and moves in phi;
+// - without azimuths the viewer's angle runs from less than 80 degrees to more than 100 (counted from the surface).
 std::vector<std::string> FindImplausibleAngles(const StatedAngles& angles, std::size_t rows);
 
 }  // namespace lobefit
