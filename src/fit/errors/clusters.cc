@@ -81,23 +81,33 @@ void Cluster::Add(const Cluster& other) {
 }
 
 ClusterTally::ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters, double residual_variance)
-    : freedom_(numbers, clusters, residual_variance) {
-  filling_ = scatter_ = Eigen::MatrixXd::Zero(numbers.rows(), numbers.rows());
+    : freedom_(numbers, clusters, residual_variance) {}
+
+void ClusterTally::MakeRoom(Eigen::MatrixXd* matrix) const {
+  if (matrix->size() == 0) matrix->setZero(freedom_.numbers().rows(), freedom_.numbers().rows());
 }
 
 void ClusterTally::Add(const Cluster& cluster) {
+  MakeRoom(&filling_);
+  if (freedom_.exact()) MakeRoom(&scatter_);
   filling_.selfadjointView<Eigen::Lower>().rankUpdate(InverseRootTimes(cluster.curvature, cluster.score));
   if (freedom_.exact()) scatter_ += cluster.scatter;
   freedom_.Add(cluster);
 }
 
 void ClusterTally::AddScatter(const ProductSums& of_samples) {
+  MakeRoom(&scatter_);
   of_samples.AddTo([](Eigen::Index k) { return k; }, &scatter_);
 }
 
 void ClusterTally::Merge(const ClusterTally& other) {
-  filling_ += other.filling_;
-  scatter_ += other.scatter_;
+  const auto add = [this](const Eigen::MatrixXd& from, Eigen::MatrixXd* to) {
+    if (from.size() == 0) return;
+    MakeRoom(to);
+    *to += from;
+  };
+  add(other.filling_, &filling_);
+  add(other.scatter_, &scatter_);
   freedom_.Merge(other.freedom_);
 }
 

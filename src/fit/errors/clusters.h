@@ -54,12 +54,15 @@ class ClusterTally {
   // Adds what another tally of the same fit has; the order is that of the clusters.
   void Merge(const ClusterTally& other);
 
-  // Lower halves.
+  // Lower halves; empty where nothing was added.
   const Eigen::MatrixXd& filling() const { return filling_; }
   const Eigen::MatrixXd& scatter() const { return scatter_; }
   const FreedomTally& freedom() const { return freedom_; }
 
  private:
+  // Of many channels a matrix that waits for its first cluster would take 21 MB.
+  void MakeRoom(Eigen::MatrixXd* matrix) const;
+
   Eigen::MatrixXd filling_, scatter_;
   FreedomTally freedom_;
 };

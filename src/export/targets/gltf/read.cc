@@ -19,7 +19,7 @@ namespace lobefit {
 namespace {
 
 // Not in the order of the file, in which an object of 70 000 members took 18 s.
-using Json = nlohmann::json;
+using GltfJson = nlohmann::json;
 
 // What each object of a material may hold.
 const std::map<std::string, std::vector<std::string>>& KnownMembers() {
@@ -41,7 +41,7 @@ const std::map<std::string, std::vector<std::string>>& KnownMembers() {
 class GltfReader {
  public:
   explicit GltfReader(const InputFile& file) : path_(file.path) {
-    json_ = ParseJson<Json>(file.bytes);
+    json_ = ParseJson<GltfJson>(file.bytes);
     if (!json_.is_object()) Fail("is not JSON");
     if (!json_.contains("materials") || !json_["materials"].is_array() || json_["materials"].empty()) {
       Fail("holds no materials");
@@ -51,14 +51,14 @@ class GltfReader {
   }
 
   GltfMaterial Read() const {
-    const Json& entry = json_["materials"][0];
-    const Json none = Json::object();
-    const Json& pbr = Object(entry, "pbrMetallicRoughness", none);
-    const Json& extensions = Object(entry, "extensions", none);
-    const Json& anisotropy = Object(extensions, "KHR_materials_anisotropy", none);
-    const Json& clearcoat = Object(extensions, "KHR_materials_clearcoat", none);
-    const Json& ior = Object(extensions, "KHR_materials_ior", none);
-    const Json& specular = Object(extensions, "KHR_materials_specular", none);
+    const GltfJson& entry = json_["materials"][0];
+    const GltfJson none = GltfJson::object();
+    const GltfJson& pbr = Object(entry, "pbrMetallicRoughness", none);
+    const GltfJson& extensions = Object(entry, "extensions", none);
+    const GltfJson& anisotropy = Object(extensions, "KHR_materials_anisotropy", none);
+    const GltfJson& clearcoat = Object(extensions, "KHR_materials_clearcoat", none);
+    const GltfJson& ior = Object(extensions, "KHR_materials_ior", none);
+    const GltfJson& specular = Object(extensions, "KHR_materials_specular", none);
     // Without pbrMetallicRoughness the defaults hold, but then an extension stands in its place.
     CheckMembers(extensions, "the extensions");
     CheckMembers(entry, "the material");
@@ -109,8 +109,8 @@ class GltfReader {
 
   // What holds for the whole file.
   void CheckFile() const {
-    const Json none = Json::object();
-    const Json& asset = Object(json_, "asset", none);
+    const GltfJson none = GltfJson::object();
+    const GltfJson& asset = Object(json_, "asset", none);
     if (asset.contains("version") && asset["version"].is_string() &&
         !asset["version"].get<std::string>().starts_with("2.")) {
       Fail(fmt::format("is glTF of the version {}; 2.0 is understood", Excerpt(asset["version"].get<std::string>())));
@@ -118,7 +118,7 @@ class GltfReader {
     const auto required = json_.find("extensionsRequired");
     if (required == json_.end() || !required->is_array()) return;
     const std::vector<std::string>& known = KnownMembers().at("the extensions");
-    for (const Json& extension : *required) {
+    for (const GltfJson& extension : *required) {
       const std::string name = extension.is_string() ? extension.get<std::string>() : "";
       if (std::find(known.begin(), known.end(), name) == known.end()) {
         Fail(fmt::format("requires the extension '{}', which is not understood; allowed are {}", Excerpt(name),
@@ -130,9 +130,9 @@ class GltfReader {
   bool HasVertexColors() const {
     const auto meshes = json_.find("meshes");
     if (meshes == json_.end() || !meshes->is_array()) return false;
-    return std::any_of(meshes->begin(), meshes->end(), [](const Json& mesh) {
+    return std::any_of(meshes->begin(), meshes->end(), [](const GltfJson& mesh) {
       if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) return false;
-      return std::any_of(mesh["primitives"].begin(), mesh["primitives"].end(), [](const Json& part) {
+      return std::any_of(mesh["primitives"].begin(), mesh["primitives"].end(), [](const GltfJson& part) {
         return part.is_object() && part.contains("attributes") && part["attributes"].is_object() &&
                part["attributes"].contains("COLOR_0");
       });
@@ -140,13 +140,13 @@ class GltfReader {
   }
 
   std::string NameOf(std::size_t material) const {
-    const Json& entry = json_["materials"][material];
+    const GltfJson& entry = json_["materials"][material];
     if (!entry.is_object() || !entry.contains("name") || !entry["name"].is_string()) return "";
     return Excerpt(entry["name"].get<std::string>());
   }
 
   // Members that are not evaluated are errors; extras are notes.
-  void CheckMembers(const Json& object, const char* of) const {
+  void CheckMembers(const GltfJson& object, const char* of) const {
     const std::vector<std::string>& known = KnownMembers().at(of);
     for (const auto& [name, value] : object.items()) {
       if (name == "extras" || std::find(known.begin(), known.end(), name) != known.end()) continue;
@@ -158,25 +158,25 @@ class GltfReader {
     }
   }
 
-  const Json& Object(const Json& parent, const char* name, const Json& none) const {
+  const GltfJson& Object(const GltfJson& parent, const char* name, const GltfJson& none) const {
     const auto found = parent.find(name);
     if (found == parent.end()) return none;
     if (!found->is_object()) Fail(fmt::format("member '{}' is not an object", name));
     return *found;
   }
-  double Real(const Json& parent, const char* name, double otherwise) const {
+  double Real(const GltfJson& parent, const char* name, double otherwise) const {
     const auto found = parent.find(name);
     if (found == parent.end()) return otherwise;
     if (!found->is_number()) Fail(fmt::format("member '{}' is not a number", name));
     return found->get<double>();
   }
   // A factor of the format, which allows 0 to 1.
-  double Factor(const Json& parent, const char* name, double otherwise) const {
+  double Factor(const GltfJson& parent, const char* name, double otherwise) const {
     const double factor = Real(parent, name, otherwise);
     if (!(factor >= 0 && factor <= 1)) Fail(fmt::format("member '{}' is {}; 0 to 1 is allowed", name, factor));
     return factor;
   }
-  Color3 Color(const Json& parent, const char* name, std::size_t size, const Color3& otherwise) const {
+  Color3 Color(const GltfJson& parent, const char* name, std::size_t size, const Color3& otherwise) const {
     const auto found = parent.find(name);
     if (found == parent.end()) return otherwise;
     Color3 color = {};
@@ -196,7 +196,7 @@ class GltfReader {
     }
   }
 
-  const Json& Item(const char* list, const Json& index) const {
+  const GltfJson& Item(const char* list, const GltfJson& index) const {
     const auto found = json_.find(list);
     if (found == json_.end() || !found->is_array() || !index.is_number_unsigned() ||
         index.get<std::size_t>() >= found->size()) {
@@ -205,11 +205,11 @@ class GltfReader {
     return (*found)[index.get<std::size_t>()];
   }
 
-  Vec3 NormalOf(const Json& texture) const {
+  Vec3 NormalOf(const GltfJson& texture) const {
     CheckMembers(texture, "normalTexture");
-    const Json missing;
-    const Json& entry = Item("textures", texture.contains("index") ? texture["index"] : missing);
-    const Json& image = Item("images", entry.contains("source") ? entry["source"] : missing);
+    const GltfJson missing;
+    const GltfJson& entry = Item("textures", texture.contains("index") ? texture["index"] : missing);
+    const GltfJson& image = Item("images", entry.contains("source") ? entry["source"] : missing);
     if (!image.contains("uri") || !image["uri"].is_string()) Fail("the image of the normal map has no uri");
     const std::string uri = image["uri"].get<std::string>();
     const double scale = Real(texture, "scale", 1);
@@ -224,13 +224,13 @@ class GltfReader {
   }
 
   const std::filesystem::path& path_;
-  Json json_;
+  GltfJson json_;
 };
 
 }  // namespace
 
 bool IsGltf(std::string_view bytes) {
-  const Json json = ParseJson<Json>(bytes);
+  const GltfJson json = ParseJson<GltfJson>(bytes);
   return json.is_object() && (json.contains("asset") || json.contains("materials"));
 }
 
