@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "lobefit/measurement/measurement.h"
@@ -15,6 +16,8 @@ class ChannelColor {
  public:
   explicit ChannelColor(const Channels& channels);
   std::array<double, 3> Linear(const double* values) const;
+  // Of a channel whose value is 1, the others 0.
+  const std::array<double, 3>& OfChannel(std::size_t channel) const { return weights_[channel]; }
 
  private:
   std::vector<std::array<double, 3>> weights_;  // one a channel

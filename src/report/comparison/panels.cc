@@ -1,5 +1,3 @@
-#include "lobefit/report/comparison/panels.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,8 +9,9 @@
 #include "lobefit/plot/axes.h"
 #include "lobefit/plot/color.h"
 #include "lobefit/plot/style.h"
+#include "lobefit/report/comparison/panels.h"
+#include "lobefit/report/figures/isotropic_lookup.h"
 #include "lobefit/report/figures/slices.h"
-#include "lobefit/report/panels/isotropic_lookup.h"
 #include "lobefit/report/panels/page.h"
 #include "lobefit/report/panels/sphere.h"
 
@@ -354,7 +353,7 @@ std::optional<Panel> ComparedErrorsPanel(const Compared& compared) {
 
 std::optional<Panel> ComparedCurvesPanel(const Compared& compared) {
   const auto curves = std::make_shared<Curves>();
-  curves->slices = GatherSlices(compared.first().measurement, compared.first().staying);
+  curves->slices = compared.first().slices();
   curves->chosen = ChooseSlices(curves->slices, kMostRows, kMostColumns, &curves->rows, &curves->columns);
   if (curves->chosen.empty()) return std::nullopt;
   for (const Slice* slice : curves->chosen)
