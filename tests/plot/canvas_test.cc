@@ -97,10 +97,13 @@ TEST(Canvas, APartDrawsOnThePageAndNowhereElse) {
 
 // The coverage of a line is looked at in words of eight pixels: wherever it lies in them it has the same ink.
 TEST(Canvas, ALineHasItsInkWhereverItBegins) {
+  double first = 0;
   for (int shift = 0; shift < 9; ++shift) {
     Canvas canvas(60, 40, 1, SomeFonts());
     canvas.Polyline({{4.0 + shift, 3}, {44.0 + shift, 33}}, {{0, 0, 0}, 2});
-    EXPECT_NEAR(Ink(canvas), 50 * 2, 8) << shift;
+    if (shift == 0) first = Ink(canvas);
+    EXPECT_GT(first, 90);
+    EXPECT_NEAR(Ink(canvas), first, 1e-9) << shift;
   }
 }
 
