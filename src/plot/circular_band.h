@@ -55,7 +55,7 @@ class CircularBand {
       }
       const double distance = std::hypot(dx, dy);
       const double inside = std::min(outer_ - distance, distance - inner_) + 0.5;
-      const auto coverage = static_cast<std::uint8_t>(255 * std::clamp(inside, 0.0, 1.0) + 0.5);
+      const auto coverage = static_cast<std::uint8_t>(std::lround(255 * std::clamp(inside, 0.0, 1.0)));
       if (coverage != 0) visit(x, coverage);
     }
   }
