@@ -23,6 +23,15 @@ HalfDifference ToHalfDifference(const Vec3& wi, const Vec3& wo) {
   return {theta_h, phi_h, PolarAngle(d), Azimuth(d)};
 }
 
+HalfDifference ToFoldedHalfDifference(const Vec3& wi, const Vec3& wo) {
+  const Vec3 wh = HalfVector(wi, wo);
+  const double sin_h = std::sqrt(wh.x * wh.x + wh.y * wh.y);
+  const double c = sin_h > 0 ? wh.x / sin_h : 1, s = sin_h > 0 ? wh.y / sin_h : 0;
+  const double along = c * wi.x + s * wi.y, x = wh.z * along - sin_h * wi.z, y = c * wi.y - s * wi.x,
+               z = sin_h * along + wh.z * wi.z;
+  return {std::atan2(sin_h, wh.z), 0, std::atan2(std::sqrt(x * x + y * y), z), std::atan2(std::fabs(y), std::fabs(x))};
+}
+
 void FromHalfDifference(const HalfDifference& angles, Vec3* wi, Vec3* wo) {
   const Vec3 d = FromSpherical(angles.theta_d, angles.phi_d);
   const Vec3 d_mirrored = {-d.x, -d.y, d.z};

@@ -26,6 +26,9 @@ struct HalfDifference {
   double theta_h, phi_h, theta_d, phi_d;
 };
 HalfDifference ToHalfDifference(const Vec3& wi, const Vec3& wo);
+// Without phi_h (given as 0), and phi_d folded into [0, pi/2], which reciprocity and mirror symmetry make one: for
+// isotropic surfaces, to rounding, in half the time.
+HalfDifference ToFoldedHalfDifference(const Vec3& wi, const Vec3& wo);
 void FromHalfDifference(const HalfDifference& angles, Vec3* wi, Vec3* wo);
 
 // Rotation about z by `angle` radians, counter-clockwise seen from +z.

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <opencv2/imgproc.hpp>
+
+#include "lobefit/plot/circular_band.h"
 
 namespace lobefit {
 namespace {
@@ -18,6 +21,45 @@ cv::Point Fixed(double x, double y) {
 }
 
 bool IsFinite(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
+
+// A colour laid over pixels.
+class Paint {
+ public:
+  Paint(Rgb color, double alpha)
+      : color_(color), strength_(static_cast<int>(std::lround(std::clamp(alpha, 0.0, 1.0) * 256))) {}
+
+  // `coverage`: 0-255.
+  void Over(std::uint8_t* pixel, int coverage) const {
+    const int weight = coverage * strength_;  // 0 .. 255 * 256
+    const auto mix = [weight](int under, int over) {
+      return static_cast<std::uint8_t>(under + ((over - under) * weight + (over > under ? 32640 : -32640)) / 65280);
+    };
+    pixel[0] = mix(pixel[0], color_.r);
+    pixel[1] = mix(pixel[1], color_.g);
+    pixel[2] = mix(pixel[2], color_.b);
+  }
+
+  // A row of pixels by a row of coverages. A line covers few pixels of the box around it: eight at a time are passed.
+  void OverRow(std::uint8_t* pixels, const std::uint8_t* coverage, int count) const {
+    constexpr int kWord = sizeof(std::uint64_t);
+    for (int x = 0; x < count;) {
+      if (std::uint64_t eight = 0; count - x >= kWord) {
+        std::memcpy(&eight, coverage + x, kWord);
+        if (eight == 0) {
+          x += kWord;
+          continue;
+        }
+      }
+      for (const int end = std::min(count, x + kWord); x < end; ++x) {
+        if (coverage[x] != 0) Over(pixels + std::ptrdiff_t{3} * x, coverage[x]);
+      }
+    }
+  }
+
+ private:
+  Rgb color_;
+  int strength_;
+};
 
 }  // namespace
 
@@ -36,12 +78,21 @@ Canvas::Canvas(double width, double height, double scale, std::shared_ptr<Fonts>
               cv::Scalar::all(255)),
       clip_(0, 0, pixels_.cols, pixels_.rows) {}
 
+cv::Rect Canvas::ClipOf(const Box& box) const {
+  const cv::Point low(static_cast<int>(std::lround(box.x * scale_)), static_cast<int>(std::lround(box.y * scale_)));
+  const cv::Point high(static_cast<int>(std::lround(box.right() * scale_)),
+                       static_cast<int>(std::lround(box.bottom() * scale_)));
+  return clip_ & cv::Rect(low, high);
+}
+
+Canvas Canvas::Part(const Box& box) const {
+  Canvas part = *this;
+  part.clip_ = ClipOf(box);
+  return part;
+}
+
 Canvas::Clip::Clip(Canvas* canvas, const Box& box) : canvas_(canvas), before_(canvas->clip_) {
-  const cv::Point low(static_cast<int>(std::lround(box.x * canvas->scale_)),
-                      static_cast<int>(std::lround(box.y * canvas->scale_)));
-  const cv::Point high(static_cast<int>(std::lround(box.right() * canvas->scale_)),
-                       static_cast<int>(std::lround(box.bottom() * canvas->scale_)));
-  canvas->clip_ = before_ & cv::Rect(low, high);
+  canvas->clip_ = canvas->ClipOf(box);
 }
 
 Canvas::Clip::~Clip() { canvas_->clip_ = before_; }
@@ -55,32 +106,22 @@ cv::Rect Canvas::PixelBox(double x0, double y0, double x1, double y1) const {
 
 void Canvas::Blend(const cv::Mat& coverage, cv::Point at, Rgb color, double alpha) {
   const cv::Rect area = cv::Rect(at.x, at.y, coverage.cols, coverage.rows) & clip_;
-  const int strength = static_cast<int>(std::lround(std::clamp(alpha, 0.0, 1.0) * 256));
+  const Paint paint(color, alpha);
   for (int y = area.y; y < area.y + area.height; ++y) {
-    const std::uint8_t* mask = coverage.ptr<std::uint8_t>(y - at.y) - at.x;
-    std::uint8_t* row = pixels_.ptr<std::uint8_t>(y);
-    for (int x = area.x; x < area.x + area.width; ++x) {
-      const int weight = mask[x] * strength;  // 0 .. 255 * 256
-      if (weight == 0) continue;
-      std::uint8_t* p = row + 3 * x;
-      const auto mix = [weight](int under, int over) {
-        return static_cast<std::uint8_t>(under + ((over - under) * weight + (over > under ? 32640 : -32640)) / 65280);
-      };
-      p[0] = mix(p[0], color.r);
-      p[1] = mix(p[1], color.g);
-      p[2] = mix(p[2], color.b);
-    }
+    paint.OverRow(pixels_.ptr<std::uint8_t>(y) + std::ptrdiff_t{3} * area.x,
+                  coverage.ptr<std::uint8_t>(y - at.y) + (area.x - at.x), area.width);
   }
 }
 
 void Canvas::Fill(const Box& box, Rgb color, double alpha) {
   // Whole pixels: neighbouring areas meet without a seam.
-  const cv::Point low(static_cast<int>(std::lround(box.x * scale_)), static_cast<int>(std::lround(box.y * scale_)));
-  const cv::Point high(static_cast<int>(std::lround(box.right() * scale_)),
-                       static_cast<int>(std::lround(box.bottom() * scale_)));
-  const cv::Rect area = cv::Rect(low, high) & clip_;
+  const cv::Rect area = ClipOf(box);
   if (area.empty()) return;
-  Blend(cv::Mat(area.size(), CV_8U, cv::Scalar(255)), area.tl(), color, alpha);
+  const Paint paint(color, alpha);
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    std::uint8_t* row = pixels_.ptr<std::uint8_t>(y);
+    for (int x = area.x; x < area.x + area.width; ++x) paint.Over(row + std::ptrdiff_t{3} * x, 255);
+  }
 }
 
 void Canvas::Frame(const Box& box, const Stroke& stroke) {
@@ -169,34 +210,25 @@ void Canvas::Polygon(const std::vector<Point>& points, Rgb color, double alpha) 
 }
 
 void Canvas::Disc(Point center, double radius, Rgb color, double alpha) {
-  const double cx = center.x * scale_, cy = center.y * scale_, r = radius * scale_;
-  const cv::Rect area = PixelBox(cx - r - 1, cy - r - 1, cx + r + 1, cy + r + 1);
-  if (area.empty()) return;
-  cv::Mat mask(area.size(), CV_8U);
-  for (int y = 0; y < area.height; ++y) {
-    for (int x = 0; x < area.width; ++x) {
-      const double distance = std::hypot(area.x + x + 0.5 - cx, area.y + y + 0.5 - cy);
-      mask.at<std::uint8_t>(y, x) =
-          static_cast<std::uint8_t>(std::lround(255 * std::clamp(r - distance + 0.5, 0.0, 1.0)));
-    }
-  }
-  Blend(mask, area.tl(), color, alpha);
+  Band(center, -1, radius * scale_, color, alpha);
 }
 
 void Canvas::Ring(Point center, double radius, const Stroke& stroke) {
-  const double cx = center.x * scale_, cy = center.y * scale_, r = radius * scale_,
-               half = std::max(0.5, stroke.width * scale_ / 2);
-  const cv::Rect area = PixelBox(cx - r - half - 1, cy - r - half - 1, cx + r + half + 1, cy + r + half + 1);
+  const double half = std::max(0.5, stroke.width * scale_ / 2);
+  Band(center, radius * scale_ - half, radius * scale_ + half, stroke.color, stroke.alpha);
+}
+
+void Canvas::Band(Point center, double inner, double outer, Rgb color, double alpha) {
+  const double cx = center.x * scale_, cy = center.y * scale_;
+  const cv::Rect area = PixelBox(cx - outer - 1, cy - outer - 1, cx + outer + 1, cy + outer + 1);
   if (area.empty()) return;
-  cv::Mat mask(area.size(), CV_8U);
-  for (int y = 0; y < area.height; ++y) {
-    for (int x = 0; x < area.width; ++x) {
-      const double off = std::fabs(std::hypot(area.x + x + 0.5 - cx, area.y + y + 0.5 - cy) - r);
-      mask.at<std::uint8_t>(y, x) =
-          static_cast<std::uint8_t>(std::lround(255 * std::clamp(half - off + 0.5, 0.0, 1.0)));
-    }
+  const Paint paint(color, alpha);
+  const CircularBand band(inner, outer);
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    std::uint8_t* row = pixels_.ptr<std::uint8_t>(y);
+    band.ForEach(cx, y + 0.5 - cy, area.x, area.x + area.width,
+                 [&](int x, std::uint8_t coverage) { paint.Over(row + std::ptrdiff_t{3} * x, coverage); });
   }
-  Blend(mask, area.tl(), stroke.color, stroke.alpha);
 }
 
 void Canvas::Image(const cv::Mat& image, const Box& box, bool smooth) {
@@ -218,6 +250,8 @@ void Canvas::Image(const cv::Mat& image, const Box& box, bool smooth) {
     for (int x = visible.x; x < visible.x + visible.width; ++x) {
       const std::uint8_t* p = from + channels * (x - area.x);
       const int alpha = channels == 4 ? p[3] : 255;
+      if (alpha == 255) std::copy_n(p, 3, to + std::ptrdiff_t{3} * x);
+      if (alpha == 255 || alpha == 0) continue;
       for (int c = 0; c < 3; ++c)
         to[3 * x + c] = static_cast<std::uint8_t>((p[c] * alpha + to[3 * x + c] * (255 - alpha) + 127) / 255);
     }

@@ -61,7 +61,8 @@ struct TextStyle {
   bool upwards = false;
 };
 
-// Glyph outlines from DejaVu Sans where it is installed, else OpenCV's stroke font with Greek letters spelled out.
+// Glyph outlines from DejaVu Sans where it is installed, else OpenCV's stroke font with Greek letters spelled out. Each
+// glyph is rendered once; several threads may ask.
 class Fonts {
  public:
   // `folders` are searched for DejaVuSans.ttf and DejaVuSans-Bold.ttf; empty: the usual places.
@@ -113,6 +114,10 @@ class Canvas {
   // Lines no wider than `width`, broken at blanks.
   std::vector<std::string> Wrap(std::string_view utf8, const TextStyle& style, double width) const;
 
+  // A canvas that draws on the pixels of this one, within the box only: parts that have no pixel in common may be drawn
+  // at the same time.
+  Canvas Part(const Box& box) const;
+
   // Drawing is limited to the box until the object goes.
   class Clip {
    public:
@@ -127,8 +132,11 @@ class Canvas {
   };
 
  private:
+  cv::Rect ClipOf(const Box& box) const;
   cv::Rect PixelBox(double x0, double y0, double x1, double y1) const;
   void Blend(const cv::Mat& coverage, cv::Point at, Rgb color, double alpha);
+  // Between two radii, in pixels.
+  void Band(Point center, double inner, double outer, Rgb color, double alpha);
   void Run(const std::vector<Point>& points, const Stroke& stroke, bool closed);
 
   double width_, height_, scale_;

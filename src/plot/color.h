@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -17,8 +18,8 @@ class ChannelColor {
   explicit ChannelColor(const Channels& channels);
   explicit ChannelColor(std::vector<std::array<double, 3>> weights) : weights_(std::move(weights)) {}
   std::array<double, 3> Linear(const double* values) const;
-  // What each channel gives to R, G and B.
-  const std::vector<std::array<double, 3>>& weights() const { return weights_; }
+  // Of a channel whose value is 1, the others 0.
+  const std::array<double, 3>& OfChannel(std::size_t channel) const { return weights_[channel]; }
 
  private:
   std::vector<std::array<double, 3>> weights_;  // one a channel

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <tuple>
 
 #include <ft2build.h>
@@ -34,6 +35,7 @@ std::string Spelled(char32_t character) {
 struct Fonts::State {
   FT_Library library = nullptr;
   std::array<FT_Face, 3> faces = {};  // regular, bold, mono
+  std::mutex mutex;                   // of the glyphs, and of the faces that draw them
   std::map<std::tuple<char32_t, int, Weight>, Glyph> glyphs;
 
   FT_Face FaceOf(Weight weight) const {
@@ -107,6 +109,7 @@ Fonts::Glyph Fonts::State::Render(char32_t character, double pixels, Weight weig
 
 const Fonts::Glyph& Fonts::Find(char32_t character, double pixels, Weight weight) {
   const auto key = std::make_tuple(character, static_cast<int>(std::lround(pixels * 64)), weight);
+  const std::lock_guard<std::mutex> lock(state_->mutex);
   const auto found = state_->glyphs.find(key);
   if (found != state_->glyphs.end()) return found->second;
   return state_->glyphs.emplace(key, state_->Render(character, pixels, weight)).first->second;

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "lobefit/base/files/file.h"
-#include "lobefit/base/process/parallel.h"
 #include "lobefit/plot/png.h"
 #include "lobefit/report/exr.h"
 #include "lobefit/report/panels/page.h"
@@ -15,19 +14,10 @@ void WriteReport(const Material& material, const Measurement& measurement, const
                  const ReportOptions& options) {
   const ReportData data(material, measurement, options.threads);
   const std::vector<Panel> panels = MakePanels(data);
-  // Picture and page at the same time, each with fonts of its own, which are no shared state.
-  std::string png, html;
-  const std::size_t first = paths.png.empty() ? 1 : 0, last = paths.html.empty() ? 1 : 2;
-  ParallelFor(last > first ? last - first : 0, options.threads, [&](std::size_t task) {
-    const auto fonts = std::make_shared<Fonts>(options.font_folders);
-    if (first + task == 0) {
-      png = EncodePng(DrawPage(data, panels, options.scale, fonts).pixels(), 96 * options.scale);
-    } else {
-      html = ReportHtml(data, panels, fonts);
-    }
-  });
-  if (!paths.png.empty()) WriteFileAtomically(paths.png, png);
-  if (!paths.html.empty()) WriteFileAtomically(paths.html, html);
+  const auto fonts = std::make_shared<Fonts>(options.font_folders);
+  if (!paths.png.empty())
+    WritePng(DrawPage(data, panels, options.scale, fonts).pixels(), 96 * options.scale, paths.png, options.threads);
+  if (!paths.html.empty()) WriteFileAtomically(paths.html, ReportHtml(data, panels, fonts));
   if (paths.exr.empty()) return;
   std::vector<NamedField> fields;
   for (const Panel& panel : panels) fields.insert(fields.end(), panel.fields.begin(), panel.fields.end());

@@ -15,7 +15,7 @@
 #include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/io/read.h"
-#include "lobefit/report/panels/isotropic_lookup.h"
+#include "lobefit/report/figures/isotropic_lookup.h"
 
 namespace lobefit {
 namespace {

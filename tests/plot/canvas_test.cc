@@ -76,6 +76,37 @@ TEST(Canvas, ClipLimitsDrawingAndEnds) {
   EXPECT_NEAR(Ink(canvas), 104, 1e-9);
 }
 
+// Panels are drawn at the same time, each on its part of the page.
+TEST(Canvas, APartDrawsOnThePageAndNowhereElse) {
+  Canvas page(60, 20, 1, SomeFonts());
+  const Canvas left = page.Part({0, 0, 30, 20});
+  Canvas right = page.Part({30, 0, 30, 20});
+  right.Fill({0, 0, 60, 20}, {0, 0, 0});
+  EXPECT_NEAR(Ink(page), 30 * 20, 1e-9);
+  EXPECT_NEAR(Ink(left), 30 * 20, 1e-9) << "one page, whichever part looks at it";
+  EXPECT_EQ(page.pixels().at<cv::Vec3b>(5, 29), cv::Vec3b(255, 255, 255));
+  EXPECT_EQ(page.pixels().at<cv::Vec3b>(5, 30), cv::Vec3b(0, 0, 0));
+  {
+    const Canvas::Clip clip(&right, {0, 0, 40, 20});
+    right.Fill({0, 0, 60, 20}, {255, 255, 255});
+  }
+  EXPECT_NEAR(Ink(page), 20 * 20, 1e-9) << "a clip within a part stays within it";
+  page.Fill({0, 0, 60, 20}, {0, 0, 0});
+  EXPECT_NEAR(Ink(page), 60 * 20, 1e-9);
+}
+
+// The coverage of a line is looked at in words of eight pixels: wherever it lies in them it has the same ink.
+TEST(Canvas, ALineHasItsInkWhereverItBegins) {
+  double first = 0;
+  for (int shift = 0; shift < 9; ++shift) {
+    Canvas canvas(60, 40, 1, SomeFonts());
+    canvas.Polyline({{4.0 + shift, 3}, {44.0 + shift, 33}}, {{0, 0, 0}, 2});
+    if (shift == 0) first = Ink(canvas);
+    EXPECT_GT(first, 90);
+    EXPECT_NEAR(Ink(canvas), first, 1e-9) << shift;
+  }
+}
+
 TEST(Canvas, CoordinatesFarOutsideDoNoHarm) {
   Canvas canvas(20, 20, 2, SomeFonts());
   canvas.Polyline({{-1e12, 5}, {1e12, 5}}, {{0, 0, 0}, 1});

@@ -14,7 +14,7 @@
 #include "lobefit/plot/color.h"
 #include "lobefit/plot/png.h"
 #include "lobefit/report/figures/fitted_function.h"
-#include "lobefit/report/panels/isotropic_lookup.h"
+#include "lobefit/report/figures/isotropic_lookup.h"
 #include "lobefit/report/panels/sphere.h"
 
 namespace lobefit {

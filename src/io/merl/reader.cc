@@ -3,12 +3,16 @@
 // programs.
 #include "lobefit/io/merl/reader.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <numeric>
 #include <vector>
 
 #include "lobefit/base/error.h"
+#include "lobefit/base/process/memory.h"
 #include "lobefit/base/process/parallel.h"
 #include "lobefit/io/merl/table.h"
 
@@ -56,7 +60,7 @@ void CheckSize(const InputFile& file) {
   }
 }
 
-// Cosines and sines of one axis of the table, and the measure of each of its cells.
+// Cosines and sines of one axis of the table.
 struct Axis {
   std::vector<double> cos, sin;
 
@@ -66,10 +70,13 @@ struct Axis {
   }
 };
 
+// What becomes of a cell.
+enum Fate : std::uint8_t { kUsable, kBelow, kSameAgain, kHole, kNotFinite, kFates };
+
 class MerlTable {
  public:
   MerlTable(std::string_view bytes, const MerlDims& dims, bool whole_turn, CellPosition position)
-      : dims_(dims), cells_(dims.cells()) {
+      : dims_(dims), columns_(static_cast<std::size_t>(dims.phi_d)), cells_(dims.cells()) {
     data_ = bytes.data() + kHeaderBytes;
     const double shift = position == CellPosition::kCentre ? 0.5 : 0.0;
     for (int i = 0; i < dims_.theta_h; ++i) theta_h_.Add(ThetaH(i + shift));
@@ -80,44 +87,53 @@ class MerlTable {
     edge_ = position == CellPosition::kEdge;
   }
 
+  // A row holds the cells of one (theta_h, theta_d), by phi_d.
   std::size_t rows() const { return static_cast<std::size_t>(dims_.theta_h) * static_cast<std::size_t>(dims_.theta_d); }
+  std::size_t columns() const { return columns_; }
 
-  // The cells of one (theta_h, theta_d): calls take(cell, wi, wo, values) for the usable ones, counts the others.
-  template <class Take>
-  void ForRow(std::size_t row, SetAside* set_aside, Take&& take) const {
-    const std::size_t h = row / static_cast<std::size_t>(dims_.theta_d),
-                      d = row % static_cast<std::size_t>(dims_.theta_d);
-    const std::size_t count = static_cast<std::size_t>(dims_.phi_d);
-    const double cos_h = theta_h_.cos[h], sin_h = theta_h_.sin[h];
-    const double cos_d = theta_d_.cos[d], sin_d = theta_d_.sin[d];
-    std::size_t below = 0, holes = 0, not_finite = 0, duplicates = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double dx = sin_d * phi_d_.cos[k], dy = sin_d * phi_d_.sin[k];
-      const double wi_z = cos_h * cos_d - sin_h * dx, wo_z = cos_h * cos_d + sin_h * dx;
-      if (!(wi_z > kHorizon) || !(wo_z > kHorizon)) {
-        ++below;
-        continue;
-      }
-      if (edge_ && d == 0 && k > 0) {
-        ++duplicates;
-        continue;
-      }
-      const std::size_t cell = row * count + k;
-      const std::array<double, 3> value = {Load(cell, 0), Load(cell, 1), Load(cell, 2)};
-      if (value[0] < 0 || value[1] < 0 || value[2] < 0) {
-        ++holes;
-        continue;
-      }
-      if (!std::isfinite(value[0] + value[1] + value[2])) {
-        ++not_finite;
-        continue;
-      }
-      take(cell, Vec3{cos_h * dx + sin_h * cos_d, dy, wi_z}, Vec3{-cos_h * dx + sin_h * cos_d, -dy, wo_z}, value);
+  void Judge(std::size_t row, Fate* fates) const {
+    const Frame f = FrameOf(row);
+    const std::size_t first = row * columns_;
+    for (std::size_t k = 0; k < columns_; ++k) {
+      const double dx = f.sin_d * phi_d_.cos[k];
+      const double red = Load(first + k, 0), green = Load(first + k, 1), blue = Load(first + k, 2);
+      const bool above = (Wz(f, dx) > kHorizon) & (Wz(f, -dx) > kHorizon);
+      const bool hole = (red < 0) | (green < 0) | (blue < 0);
+      fates[k] = !above ? kBelow : hole ? kHole : !std::isfinite(red + green + blue) ? kNotFinite : kUsable;
     }
-    set_aside->Add(SetAsideReason::kBelowHorizon, below);
-    set_aside->Add(SetAsideReason::kHole, holes);
-    set_aside->Add(SetAsideReason::kNotFinite, not_finite);
-    set_aside->Add(SetAsideReason::kDuplicate, duplicates);
+    if (!edge_ || row % static_cast<std::size_t>(dims_.theta_d) != 0) return;
+    for (std::size_t k = 1; k < columns_; ++k) fates[k] = fates[k] == kBelow ? kBelow : kSameAgain;
+  }
+
+  // One number of each cell of a row.
+  enum class Number { kWiX, kWiY, kWiZ, kWoX, kWoY, kWoZ, kRed, kGreen, kBlue };
+  void Evaluate(std::size_t row, Number number, double* values) const {
+    const Frame f = FrameOf(row);
+    const auto fill = [&](const auto& value) {
+      for (std::size_t k = 0; k < columns_; ++k) values[k] = value(k);
+    };
+    const auto dx = [&](std::size_t k) { return f.sin_d * phi_d_.cos[k]; };
+    const auto dy = [&](std::size_t k) { return f.sin_d * phi_d_.sin[k]; };
+    switch (number) {
+      case Number::kWiX:
+        return fill([&](std::size_t k) { return f.cos_h * dx(k) + f.sin_h * f.cos_d; });
+      case Number::kWiY:
+        return fill(dy);
+      case Number::kWiZ:
+        return fill([&](std::size_t k) { return Wz(f, dx(k)); });
+      case Number::kWoX:
+        return fill([&](std::size_t k) { return -f.cos_h * dx(k) + f.sin_h * f.cos_d; });
+      case Number::kWoY:
+        return fill([&](std::size_t k) { return -dy(k); });
+      case Number::kWoZ:
+        return fill([&](std::size_t k) { return Wz(f, -dx(k)); });
+      case Number::kRed:
+      case Number::kGreen:
+      case Number::kBlue:
+        break;
+    }
+    const std::size_t channel = static_cast<std::size_t>(number) - static_cast<std::size_t>(Number::kRed);
+    fill([&](std::size_t k) { return Load(row * columns_ + k, channel); });
   }
 
   // d(wi) d(wo) = 4 cos(theta_d) d(wh) d(wd): measure of each cell of the row, taken at its centre.
@@ -131,6 +147,17 @@ class MerlTable {
  private:
   static constexpr double kHorizon = 1e-9;
 
+  struct Frame {
+    double cos_h, sin_h, cos_d, sin_d;
+  };
+  Frame FrameOf(std::size_t row) const {
+    const std::size_t h = row / static_cast<std::size_t>(dims_.theta_d),
+                      d = row % static_cast<std::size_t>(dims_.theta_d);
+    return {theta_h_.cos[h], theta_h_.sin[h], theta_d_.cos[d], theta_d_.sin[d]};
+  }
+  // z of wi; of wo for -dx.
+  static double Wz(const Frame& f, double dx) { return f.cos_h * f.cos_d - f.sin_h * dx; }
+
   double ThetaH(double index) const { return MerlThetaH(index * 90 / dims_.theta_h); }
 
   double Load(std::size_t cell, std::size_t channel) const {
@@ -140,11 +167,70 @@ class MerlTable {
   }
 
   MerlDims dims_;
-  std::size_t cells_;
+  std::size_t columns_, cells_;
   const char* data_;
   bool edge_;
   Axis theta_h_, theta_d_, phi_d_;
 };
+
+// The fates of all cells, and what follows from them.
+struct Verdicts {
+  std::vector<Fate> fates;
+  std::vector<std::uint32_t> usable;  // of each row
+  std::size_t total = 0;              // usable
+  SetAside set_aside;
+};
+
+Verdicts JudgeCells(const MerlTable& table, ThreadPool* pool) {
+  const std::size_t rows = table.rows(), columns = table.columns();
+  constexpr std::size_t kRowsAPiece = 90;
+  Verdicts verdicts;
+  verdicts.fates.resize(rows * columns);
+  verdicts.usable.resize(rows);
+  std::vector<std::array<std::size_t, kFates>> counts((rows + kRowsAPiece - 1) / kRowsAPiece);
+  pool->Run(counts.size(), [&](std::size_t piece) {
+    for (std::size_t row = piece * kRowsAPiece; row < std::min(rows, (piece + 1) * kRowsAPiece); ++row) {
+      Fate* const fates = &verdicts.fates[row * columns];
+      table.Judge(row, fates);
+      std::array<std::uint32_t, kFates> of_row = {};
+      for (std::size_t k = 0; k < columns; ++k) ++of_row[fates[k]];
+      verdicts.usable[row] = of_row[kUsable];
+      for (std::size_t fate = 0; fate < kFates; ++fate) counts[piece][fate] += of_row[fate];
+    }
+  });
+  for (const auto& of_piece : counts) {
+    verdicts.total += of_piece[kUsable];
+    verdicts.set_aside.Add(SetAsideReason::kBelowHorizon, of_piece[kBelow]);
+    verdicts.set_aside.Add(SetAsideReason::kDuplicate, of_piece[kSameAgain]);
+    verdicts.set_aside.Add(SetAsideReason::kHole, of_piece[kHole]);
+    verdicts.set_aside.Add(SetAsideReason::kNotFinite, of_piece[kNotFinite]);
+  }
+  return verdicts;
+}
+
+// Appends the usable cells of all rows; evaluate(row, values) gives one number of each cell of a row. Clearing 100 MB
+// before they are written would take as long as writing them.
+template <class T, class Evaluate>
+void AppendUsable(const MerlTable& table, const Verdicts& verdicts, const Evaluate& evaluate, std::vector<T>* array) {
+  array->reserve(verdicts.total);
+  AdviseLargePages(array->data(), verdicts.total * sizeof(T));
+  const std::size_t columns = table.columns();
+  std::vector<T> values(columns);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::size_t usable = verdicts.usable[row];
+    if (usable == 0) continue;
+    evaluate(row, values.data());
+    if (usable < columns) {
+      const Fate* const fates = &verdicts.fates[row * columns];
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < columns; ++k) {
+        values[kept] = values[k];
+        kept += fates[k] == kUsable ? 1 : 0;
+      }
+    }
+    array->insert(array->end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(usable));
+  }
+}
 
 }  // namespace
 
@@ -166,66 +252,40 @@ Measurement ReadMerl(const InputFile& file, const ReadOptions& options) {
 Measurement ReadMerlTable(std::string_view bytes, const MerlDims& dims, bool whole_turn, CellPosition position) {
   const MerlTable table(bytes, dims, whole_turn, position);
   ThreadPool pool(dims.cells() < kFewCells ? 1 : HardwareThreads());
-  const std::size_t rows = table.rows();
-  const std::size_t rows_a_piece = static_cast<std::size_t>(dims.theta_d), pieces = rows / rows_a_piece;
-
-  std::vector<std::size_t> first(rows + 1, 0);
-  std::vector<SetAside> set_aside(pieces);
-  pool.Run(pieces, [&](std::size_t piece) {
-    for (std::size_t row = piece * rows_a_piece; row < (piece + 1) * rows_a_piece; ++row) {
-      std::size_t usable = 0;
-      table.ForRow(row, &set_aside[piece], [&](std::size_t, const Vec3&, const Vec3&, const auto&) { ++usable; });
-      first[row + 1] = usable;
-    }
-  });
+  const Verdicts verdicts = JudgeCells(table, &pool);
   double measure_sum = 0;
-  for (std::size_t row = 0; row < rows; ++row) {
-    measure_sum += table.CellMeasure(row) * static_cast<double>(first[row + 1]);
-    first[row + 1] += first[row];
-  }
-  const std::size_t total = first[rows];
-  const double measure_scale = measure_sum > 0 ? static_cast<double>(total) / measure_sum : 1.0;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    measure_sum += table.CellMeasure(row) * static_cast<double>(verdicts.usable[row]);
+  const double measure_scale = measure_sum > 0 ? static_cast<double>(verdicts.total) / measure_sum : 1.0;
 
   Measurement measurement;
   measurement.channels.names = {"R", "G", "B"};
   measurement.isotropic = true;
   measurement.conventions["merl-cell"] = position == CellPosition::kCentre ? "centre" : "edge";
-  for (const SetAside& counts : set_aside) {
-    for (int i = 0; i < kSetAsideReasons; ++i) {
-      const auto reason = static_cast<SetAsideReason>(i);
-      measurement.set_aside.Add(reason, counts[reason]);
-    }
-  }
+  measurement.set_aside = verdicts.set_aside;
   Samples& samples = measurement.samples;
   samples.values.resize(3);
-  const std::array<std::vector<double>*, 10> arrays = {
-      &samples.wi_x, &samples.wi_y,      &samples.wi_z,      &samples.wo_x,      &samples.wo_y,
-      &samples.wo_z, &samples.values[0], &samples.values[1], &samples.values[2], &samples.solid_angle};
-  // Touching 100 MB of fresh memory takes as long as filling it: done by all threads.
-  pool.Run(arrays.size() + 1, [&](std::size_t i) {
+  // In the order of MerlTable::Number.
+  const std::array<std::vector<double>*, 9> arrays = {&samples.wi_x,      &samples.wi_y,      &samples.wi_z,
+                                                      &samples.wo_x,      &samples.wo_y,      &samples.wo_z,
+                                                      &samples.values[0], &samples.values[1], &samples.values[2]};
+  // An array a piece: each is written from its beginning, by the thread that is free.
+  pool.Run(arrays.size() + 2, [&](std::size_t i) {
     if (i < arrays.size()) {
-      arrays[i]->resize(total);
+      const auto evaluate = [&](std::size_t row, double* values) {
+        table.Evaluate(row, static_cast<MerlTable::Number>(i), values);
+      };
+      AppendUsable(table, verdicts, evaluate, arrays[i]);
+    } else if (i == arrays.size()) {
+      const auto evaluate = [&](std::size_t row, double* values) {
+        std::fill_n(values, table.columns(), table.CellMeasure(row) * measure_scale);
+      };
+      AppendUsable(table, verdicts, evaluate, &samples.solid_angle);
     } else {
-      samples.origin.resize(total);
-    }
-  });
-  pool.Run(pieces, [&](std::size_t piece) {
-    SetAside ignored;
-    for (std::size_t row = piece * rows_a_piece; row < (piece + 1) * rows_a_piece; ++row) {
-      std::size_t at = first[row];
-      const double measure = table.CellMeasure(row) * measure_scale;
-      table.ForRow(row, &ignored, [&](std::size_t cell, const Vec3& wi, const Vec3& wo, const auto& value) {
-        samples.wi_x[at] = wi.x;
-        samples.wi_y[at] = wi.y;
-        samples.wi_z[at] = wi.z;
-        samples.wo_x[at] = wo.x;
-        samples.wo_y[at] = wo.y;
-        samples.wo_z[at] = wo.z;
-        for (std::size_t c = 0; c < 3; ++c) samples.values[c][at] = value[c];
-        samples.solid_angle[at] = measure;
-        samples.origin[at] = static_cast<std::uint32_t>(cell);
-        ++at;
-      });
+      const auto evaluate = [&](std::size_t row, std::uint32_t* cells) {
+        std::iota(cells, cells + table.columns(), static_cast<std::uint32_t>(row * table.columns()));
+      };
+      AppendUsable(table, verdicts, evaluate, &samples.origin);
     }
   });
   return measurement;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <unordered_map>
 
 #include "lobefit/base/text/text.h"
 #include "lobefit/math/statistics.h"
@@ -69,11 +70,12 @@ class Checks {
 
   void Gather() {
     // Light from nearby directions counts as one; an isotropic table has no azimuths of it.
-    std::map<std::pair<long, long>, std::size_t> index;
+    std::unordered_map<std::int64_t, std::size_t> index;
     const double near = std::cos(12 * kPi / 180);
     for (const std::size_t i : chosen_) {
       const Vec3 wi = samples_.wi(i), wo = samples_.wo(i);
-      const std::pair<long, long> key = {std::lround(500 * wi.x), std::lround(500 * wi.y)};
+      constexpr std::int64_t kApart = 1 << 20;
+      const std::int64_t key = kApart * std::lround(500 * wi.x) + std::lround(500 * wi.y);
       auto found = index.find(key);
       if (found == index.end()) {
         if (incidences_.size() >= 1024) continue;

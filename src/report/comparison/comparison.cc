@@ -45,7 +45,7 @@ void WriteComparisonPng(const std::vector<ComparedModel>& models, const Measurem
                             : std::to_string(count) + (count == 1 ? " model" : " models") + " on the same samples";
   const Canvas canvas =
       DrawStackedPage(measurement.source, more, panels, options.scale, std::make_shared<Fonts>(options.font_folders));
-  WritePng(canvas.pixels(), 96 * options.scale, path);
+  WritePng(canvas.pixels(), 96 * options.scale, path, options.threads);
 }
 
 }  // namespace lobefit

@@ -174,7 +174,7 @@ void WriteCoveragePng(const Measurement& measurement, const std::filesystem::pat
   canvas.Text({kWidth - kMargin, kHeight - kScaleRoom + 11},
               "radius: polar angle, azimuth from the right, counter-clockwise",
               style::Note(style::kSecondary, Align::kRight));
-  WritePng(canvas.pixels(), 96 * options.scale, path);
+  WritePng(canvas.pixels(), 96 * options.scale, path, options.threads);
 }
 
 }  // namespace lobefit

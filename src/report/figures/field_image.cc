@@ -6,6 +6,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "lobefit/plot/circular_band.h"
 #include "lobefit/plot/style.h"
 #include "lobefit/report/figures/report_data.h"
 
@@ -108,15 +109,24 @@ cv::Mat Picture(const std::vector<float>& values, int width, int height, const s
   return picture;
 }
 
+std::array<cv::Mat, 3> Pictures(const FieldImage& image, const FieldScale& scale) {
+  const auto value = [&scale](float v) { return scale.ValueColor(v); };
+  const auto ratio = [&scale](float v) { return scale.RatioColor(v); };
+  return {Picture(image.measured, image.width, image.height, value),
+          Picture(image.fitted, image.width, image.height, value),
+          Picture(image.log_ratio, image.width, image.height, ratio)};
+}
+
 cv::Mat RoundPicture(const cv::Mat& picture, int pixels) {
   cv::Mat large;
   cv::resize(picture, large, {pixels, pixels}, 0, 0, cv::INTER_LINEAR);
   const double radius = pixels / 2.0;
+  const CircularBand disc(-1, radius);
   for (int row = 0; row < pixels; ++row) {
-    for (int column = 0; column < pixels; ++column) {
-      const double inside = radius - std::hypot(column + 0.5 - radius, row + 0.5 - radius) + 0.5;
-      large.at<cv::Vec4b>(row, column)[3] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(inside, 0.0, 1.0)));
-    }
+    auto* const line = large.ptr<cv::Vec4b>(row);
+    for (int column = 0; column < pixels; ++column) line[column][3] = 0;
+    disc.ForEach(radius, row + 0.5 - radius, 0, pixels,
+                 [line](int column, std::uint8_t coverage) { line[column][3] = coverage; });
   }
   return large;
 }

@@ -1,6 +1,7 @@
 // Pictures of f_r over two angles, measured, fitted and their ratio, in common colour scales.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -57,6 +58,9 @@ class FieldScale {
 
 // RGBA; light grey where nothing is known.
 cv::Mat Picture(const std::vector<float>& values, int width, int height, const std::function<Rgb(float)>& color);
+
+// Of what is measured, what is fitted and their ratio.
+std::array<cv::Mat, 3> Pictures(const FieldImage& image, const FieldScale& scale);
 
 // `picture` enlarged to `pixels` a side, transparent outside the disc that fills it.
 cv::Mat RoundPicture(const cv::Mat& picture, int pixels);

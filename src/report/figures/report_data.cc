@@ -88,6 +88,16 @@ ReportData::ReportData(const Material& fitted_material, const Measurement& measu
   }
 }
 
+const Slices& ReportData::slices() const {
+  std::call_once(slices_once_, [this] { slices_ = GatherSlices(measurement, staying); });
+  return *slices_;
+}
+
+const IsotropicLookup& ReportData::lookup() const {
+  std::call_once(lookup_once_, [this] { lookup_.emplace(measurement); });
+  return *lookup_;
+}
+
 void ReportData::Read(const DirectionArrays& directions, const double* sample_azimuth,
                       std::vector<std::vector<double>>* values) const {
   if (reading) {

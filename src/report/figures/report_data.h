@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/plot/canvas.h"
 #include "lobefit/report/figures/fitted_function.h"
+#include "lobefit/report/figures/isotropic_lookup.h"
 #include "lobefit/report/figures/slices.h"
 
 namespace lobefit {
@@ -36,6 +38,9 @@ struct ReportData {
   std::vector<double> display_weights;  // one a channel, sum 1
 
   std::size_t channels() const { return fitted.channels(); }
+  // Found when first asked for, by any thread: the slices, and the values of an isotropic measurement between samples.
+  const Slices& slices() const;
+  const IsotropicLookup& lookup() const;
   // What stands beside measured values: readings, or f_r of the surface where there is no instrument. Directions above
   // the horizon; values[c][i].
   void Read(const DirectionArrays& directions, const double* sample_azimuth,
@@ -46,6 +51,11 @@ struct ReportData {
   double Display(const std::vector<std::vector<double>>& values, std::size_t sample) const;
   // ln(measured / fitted); -infinity for a measured value of zero or less, NaN where the fitted value is zero.
   double LogRatio(std::size_t channel, std::size_t sample) const;
+
+ private:
+  mutable std::once_flag slices_once_, lookup_once_;
+  mutable std::optional<Slices> slices_;
+  mutable std::optional<IsotropicLookup> lookup_;
 };
 
 // Quantiles of ln(measured / fitted) of one channel over theta_h, as far as samples are there.

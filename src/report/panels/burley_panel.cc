@@ -8,6 +8,7 @@
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/style.h"
 #include "lobefit/report/figures/field_image.h"
+#include "lobefit/report/figures/fitted_pixels.h"
 #include "lobefit/report/figures/scatter.h"
 #include "lobefit/report/panels/panel.h"
 
@@ -25,6 +26,11 @@ struct AngleImage {
   double cover = 0;
 };
 
+struct Drawn {
+  FieldScale scale;
+  std::array<cv::Mat, 3> pictures;  // measured, fitted, their ratio
+};
+
 // theta_h at a column, theta_d at a row (0 at the bottom), radians.
 double AngleAt(int pixel) { return (pixel + 0.5) / kSize * kPi / 2; }
 
@@ -39,8 +45,8 @@ std::shared_ptr<AngleImage> Make(const ReportData& data) {
   std::vector<Member> members;
   const std::size_t step = 1 + samples.size() / 600000;
   for (std::size_t i = 0; i < samples.size(); i += step) {
-    const HalfDifference angles = ToHalfDifference(samples.wi(i), samples.wo(i));
-    const double off = RadiansToDegrees(std::fabs(std::fabs(std::remainder(angles.phi_d, kPi)) - kPi / 2));
+    const HalfDifference angles = ToFoldedHalfDifference(samples.wi(i), samples.wo(i));
+    const double off = RadiansToDegrees(kPi / 2 - angles.phi_d);
     if (off > kWidths.back()) continue;
     const auto unit = [](double angle) { return static_cast<float>(angle / (kPi / 2)); };
     members.push_back(
@@ -68,7 +74,7 @@ std::shared_ptr<AngleImage> Make(const ReportData& data) {
   const ScatterField field(std::move(points), 2, 0.02F);
   int possible = 0;
   std::vector<std::uint8_t> near(slices->image->measured.size());
-  std::vector<double> f_r(data.channels());
+  FittedPixels read(data);
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
       const double theta_h = AngleAt(column), theta_d = AngleAt(kSize - 1 - row);
@@ -77,8 +83,7 @@ std::shared_ptr<AngleImage> Make(const ReportData& data) {
       if (wi.z <= 0.02 || wo.z <= 0.02) continue;
       ++possible;
       const std::size_t pixel = slices->image->At(column, row);
-      data.Read(wi, wo, f_r.data());
-      slices->image->fitted[pixel] = static_cast<float>(data.Display(f_r));
+      read.Add(pixel, wi, wo);
       std::array<std::uint32_t, 4> indices;
       std::array<float, 4> weights;
       bool is_near = false;
@@ -94,6 +99,7 @@ std::shared_ptr<AngleImage> Make(const ReportData& data) {
       slices->image->measured[pixel] = value;
       slices->image->log_ratio[pixel] = ratio;
     }
+    read.Write(slices->image.get());
   }
   slices->cover = static_cast<double>(KeepNear(near, slices->image.get())) / std::max(1, possible);
   return slices;
@@ -103,19 +109,13 @@ constexpr double kLeft = 52, kGap = 22;
 
 double Side(double width) { return std::min(300.0, (width - kLeft - 2 * kGap) / 3); }
 
-void Draw(const AngleImage& slices, Canvas* canvas, const Box& content) {
-  const FieldScale scale({slices.image.get()});
+void Draw(const Drawn& drawn, Canvas* canvas, const Box& content) {
   const double size = Side(content.width), used = 3 * size + 2 * kGap,
                left = content.x + kLeft + std::max(0.0, (content.width - kLeft - used) / 2);
-  const auto value = [&scale](float v) { return scale.ValueColor(v); };
-  const auto ratio = [&scale](float v) { return scale.RatioColor(v); };
-  const std::array<cv::Mat, 3> pictures = {Picture(slices.image->measured, kSize, kSize, value),
-                                           Picture(slices.image->fitted, kSize, kSize, value),
-                                           Picture(slices.image->log_ratio, kSize, kSize, ratio)};
   const std::array<const char*, 3> names = {"measured", "fitted", "measured / fitted"};
   for (std::size_t k = 0; k < 3; ++k) {
     const Box frame = {left + static_cast<double>(k) * (size + kGap), content.y + 22, size, size};
-    canvas->Image(pictures[k], frame, true);
+    canvas->Image(drawn.pictures[k], frame, true);
     const Axes axes(frame, {0, 90, false}, {0, 90, false});
     const std::vector<Tick> ticks = AngleTicks(0, 90, 4);
     axes.DrawFrame(canvas, ticks, ticks, true, k == 0);
@@ -123,7 +123,7 @@ void Draw(const AngleImage& slices, Canvas* canvas, const Box& content) {
     if (k == 0) axes.DrawYLabel(canvas, "θ_d  (degrees)", 36);
     canvas->Text({frame.center().x, content.y + 14}, names[k], style::Body(style::kInk, Align::kCenter));
   }
-  scale.Draw(canvas, left, left + used, content.y + 22 + size + 48);
+  drawn.scale.Draw(canvas, left, left + used, content.y + 22 + size + 48);
 }
 
 }  // namespace
@@ -132,6 +132,8 @@ std::optional<Panel> BurleyPanel(const ReportData& data) {
   if (!data.measurement.isotropic) return std::nullopt;
   const std::shared_ptr<AngleImage> slices = Make(data);
   if (slices->cover < kLeastCover) return std::nullopt;
+  const FieldScale scale({slices->image.get()});
+  const auto drawn = std::make_shared<Drawn>(Drawn{scale, Pictures(*slices->image, scale)});
   Panel panel;
   panel.id = "burley";
   panel.title = "Half angle against difference angle";
@@ -139,7 +141,7 @@ std::optional<Panel> BurleyPanel(const ReportData& data) {
                    {},
                    Join({"φ_d within ", Number(slices->width, 2), "° of 90°;  grey: no sample near"}, "")}};
   panel.height = [](Canvas*, double width) { return 22 + Side(width) + 48 + FieldScale::kHeight; };
-  panel.draw = [slices](Canvas* canvas, const Box& content) { Draw(*slices, canvas, content); };
+  panel.draw = [drawn](Canvas* canvas, const Box& content) { Draw(*drawn, canvas, content); };
   panel.fields = {{"half_difference.phi_d_90", "φ_d = 90°", slices->image}};
   return panel;
 }

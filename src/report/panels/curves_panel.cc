@@ -21,7 +21,7 @@ constexpr double kMostDecades = 6;
 
 struct Curves {
   const ReportData& data;
-  Slices slices;
+  const Slices& slices;
   std::vector<const Slice*> chosen;
   std::size_t rows = 0, columns = 0;
   std::size_t azimuths = 1;         // 1: not worth a label
@@ -30,7 +30,7 @@ struct Curves {
   double ratio = 1;                 // the strips reach from 1 / ratio to ratio
   std::size_t not_shown = 0;        // points of the chosen slices below the scale
 
-  explicit Curves(const ReportData& d) : data(d), slices(GatherSlices(d.measurement, d.staying)) {
+  explicit Curves(const ReportData& d) : data(d), slices(d.slices()) {
     for (const std::size_t channel : d.shown_channels) bands.emplace_back(d, channel);
     chosen = ChooseSlices(slices, kMostRows, kMostColumns, &rows, &columns);
     for (const Slice* slice : chosen) {

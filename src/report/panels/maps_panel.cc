@@ -13,6 +13,7 @@
 #include "lobefit/measurement/incidence.h"
 #include "lobefit/plot/style.h"
 #include "lobefit/report/figures/field_image.h"
+#include "lobefit/report/figures/fitted_pixels.h"
 #include "lobefit/report/figures/scatter.h"
 #include "lobefit/report/panels/panel.h"
 
@@ -93,17 +94,16 @@ Map MakeMap(const ReportData& data, const std::vector<std::uint32_t>& members, c
   }
   const float reach = Reach(points);
   const ScatterField field(std::move(points), 2, reach);
-  std::vector<double> f_r(data.channels());
   int inside = 0;
   std::vector<std::uint8_t> near(map.image->measured.size());
+  FittedPixels fitted(data);
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
       const Vec3 w = PixelDirection(column, row);
       if (w.z <= 0) continue;
       ++inside;
       const std::size_t pixel = map.image->At(column, row);
-      data.Read(outgoing ? w : map.stays, outgoing ? map.stays : w, f_r.data());
-      map.image->fitted[pixel] = static_cast<float>(data.Display(f_r));
+      fitted.Add(pixel, outgoing ? w : map.stays, outgoing ? map.stays : w);
       std::array<std::uint32_t, 4> indices;
       std::array<float, 4> weights;
       bool is_near = false;
@@ -118,6 +118,7 @@ Map MakeMap(const ReportData& data, const std::vector<std::uint32_t>& members, c
       // Between the ratios of samples, not the ratio of a value between samples: steep lobes would leave patterns.
       map.image->log_ratio[pixel] = ratio;
     }
+    fitted.Write(map.image.get());
   }
   map.cover = static_cast<double>(KeepNear(near, map.image.get())) / inside;
   return map;
@@ -157,8 +158,10 @@ std::vector<Map> MakeMaps(const ReportData& data) {
 }
 
 struct Maps {
-  const ReportData& data;
   std::vector<Map> maps;
+  std::vector<std::string> titles;
+  FieldScale scale;
+  std::vector<std::array<cv::Mat, 3>> pictures;  // of each map: measured, fitted, their ratio
 };
 
 void DrawDisc(Canvas* canvas, const cv::Mat& picture, const Box& box, const Vec3& stays, Rgb mark) {
@@ -195,36 +198,39 @@ void Draw(const Maps& maps, Canvas* canvas, const Box& content) {
   const double size = DiscSize(content.width, std::max<std::size_t>(count, 3));
   const double used = size * static_cast<double>(count) + kSpace * static_cast<double>(count - 1);
   const double left = content.x + kLabel + std::max(0.0, (content.width - kLabel - used) / 2);
-  std::vector<const FieldImage*> images;
-  for (const Map& map : maps.maps) images.push_back(map.image.get());
-  const FieldScale scale(images);
-  const auto value = [&scale](float v) { return scale.ValueColor(v); };
-  const auto ratio = [&scale](float v) { return scale.RatioColor(v); };
   const std::array<const char*, 3> names = {"measured", "fitted", "measured / fitted"};
   for (std::size_t k = 0; k < count; ++k) {
     const Map& map = maps.maps[k];
     const double x = left + static_cast<double>(k) * (size + kSpace);
-    canvas->Text({x + size / 2, content.y + 12}, Title(maps.data, map),
+    canvas->Text({x + size / 2, content.y + 12}, maps.titles[k],
                  {.size = style::kBodySize, .color = style::kInk, .align = Align::kCenter, .markup = true});
     const auto place = [&](int row) { return Box{x, content.y + kHead + row * (size + kSpace), size, size}; };
-    DrawDisc(canvas, Picture(map.image->measured, kSize, kSize, value), place(0), map.stays, {255, 255, 255});
-    DrawDisc(canvas, Picture(map.image->fitted, kSize, kSize, value), place(1), map.stays, {255, 255, 255});
-    DrawDisc(canvas, Picture(map.image->log_ratio, kSize, kSize, ratio), place(2), map.stays, style::kInk);
+    for (int row = 0; row < 3; ++row) {
+      DrawDisc(canvas, maps.pictures[k][static_cast<std::size_t>(row)], place(row), map.stays,
+               row < 2 ? Rgb{255, 255, 255} : style::kInk);
+    }
   }
   for (int row = 0; row < 3; ++row) {
     canvas->Text({left - 14, content.y + kHead + row * (size + kSpace) + size / 2},
                  names[static_cast<std::size_t>(row)],
                  {.size = style::kBodySize, .color = style::kInk, .align = Align::kCenter, .upwards = true});
   }
-  scale.Draw(canvas, left, left + used, content.y + kHead + 3 * (size + kSpace));
+  maps.scale.Draw(canvas, left, left + used, content.y + kHead + 3 * (size + kSpace));
 }
 
 }  // namespace
 
 std::optional<Panel> MapsPanel(const ReportData& data) {
   if (IsInPlane(data.measurement.samples)) return std::nullopt;
-  const auto maps = std::make_shared<Maps>(Maps{data, MakeMaps(data)});
-  if (maps->maps.empty()) return std::nullopt;
+  std::vector<Map> made = MakeMaps(data);
+  if (made.empty()) return std::nullopt;
+  std::vector<const FieldImage*> images;
+  for (const Map& map : made) images.push_back(map.image.get());
+  const auto maps = std::make_shared<Maps>(Maps{std::move(made), {}, FieldScale(images), {}});
+  for (const Map& map : maps->maps) {
+    maps->titles.push_back(Title(data, map));
+    maps->pictures.push_back(Pictures(*map.image, maps->scale));
+  }
   Panel panel;
   panel.id = "maps";
   panel.title = "All outgoing directions";
@@ -236,11 +242,12 @@ std::optional<Panel> MapsPanel(const ReportData& data) {
   };
   panel.draw = [maps](Canvas* canvas, const Box& content) { Draw(*maps, canvas, content); };
   const std::string side = data.staying.outgoing ? "o" : "i";
-  for (const Map& map : maps->maps) {
+  for (std::size_t k = 0; k < maps->maps.size(); ++k) {
+    const Map& map = maps->maps[k];
     const auto degrees = [](double angle) { return std::to_string(std::lround(RadiansToDegrees(angle))); };
     std::string name = Join({"maps.theta_", side, "_", degrees(PolarAngle(map.stays))}, "");
     if (!data.measurement.isotropic) name += Join({".phi_", side, "_", degrees(Azimuth(map.stays))}, "");
-    panel.fields.push_back({name, Title(data, map), map.image});
+    panel.fields.push_back({name, maps->titles[k], map.image});
   }
   return panel;
 }

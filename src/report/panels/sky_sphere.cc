@@ -66,14 +66,40 @@ struct SkyPoints {
 };
 
 // What reaches one pixel.
-struct Arriving {
-  std::array<std::vector<double>, 6> d;  // wi.x ... wo.z
-  std::vector<double> weight;            // wi.z over the density of the points there
-  std::vector<Color> radiance;
-  std::size_t size() const { return weight.size(); }
-  DirectionArrays arrays() const {
-    return {d[0].data(), d[1].data(), d[2].data(), d[3].data(), d[4].data(), d[5].data(), size()};
+class Arriving {
+ public:
+  explicit Arriving(std::size_t most) : weight_(most), radiance_(most) {
+    for (std::vector<double>& component : d_) component.resize(most);
   }
+
+  void Clear() { size_ = 0; }
+  // `weight`: the cosine of wi over the density of the points there.
+  void Add(const Vec3& wi, const Vec3& wo, double weight, const Color& radiance) {
+    const double all[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
+    for (std::size_t j = 0; j < 6; ++j) d_[j][size_] = all[j];
+    weight_[size_] = weight;
+    radiance_[size_++] = radiance;
+  }
+  std::size_t size() const { return size_; }
+  DirectionArrays arrays() const {
+    return {d_[0].data(), d_[1].data(), d_[2].data(), d_[3].data(), d_[4].data(), d_[5].data(), size_};
+  }
+  // What a channel sends on under each of the sky's red, green and blue; where known[i] == 0, nothing.
+  Color Sum(const std::vector<double>& f_r, const std::vector<std::uint8_t>& known) const {
+    Color sum = {0, 0, 0};
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (known[i] == 0) continue;
+      const double f = f_r[i] * weight_[i];
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += f * radiance_[i][k];
+    }
+    return sum;
+  }
+
+ private:
+  std::size_t size_ = 0;
+  std::array<std::vector<double>, 6> d_;  // wi.x ... wo.z
+  std::vector<double> weight_;
+  std::vector<Color> radiance_;
 };
 
 }  // namespace
@@ -87,17 +113,14 @@ LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& coordinates, 
   const SkyPoints points(lobe, each, glow_end, grey);
   LitSphere sphere = DarkSphere(kSkySize);
   ParallelFor(kSkySize, threads, [&](std::size_t row) {
-    std::vector<double> values(channels);
     std::vector<std::vector<double>> f_r;
     std::vector<std::uint8_t> known;
-    Arriving arriving;
+    Arriving arriving(static_cast<std::size_t>(3 * each));
     for (int column = 0; column < kSkySize; ++column) {
       PointFrame frame;
       if (!FrameOfPixel(column, static_cast<int>(row), kSkySize, &frame)) continue;
       const Vec3 wo = frame.ToLocal({0, 0, 1});
-      for (std::vector<double>& component : arriving.d) component.clear();
-      arriving.weight.clear();
-      arriving.radiance.clear();
+      arriving.Clear();
       const auto add = [&](const Vec3& wi, double glow, const Color& radiance) {
         // D(h) h.z / (4 wo.h) of the lobe by the unnormalised half vector (slope_ndf.h).
         const Vec3 sum = wi + wo;
@@ -105,10 +128,7 @@ LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& coordinates, 
                      y2 = (-sum.y - sum.z * lobe.slope_y - lobe.b * y1) / lobe.c;
         const double t = sum.z * sum.z + y1 * y1 + y2 * y2;
         const double of_lobe = Dot(sum, sum) * sum.z / (2 * kPi * lobe.a * lobe.c * t * t);
-        arriving.weight.push_back(wi.z / ((of_lobe + wi.z * kInvPi + glow_density * glow) * each));
-        arriving.radiance.push_back(radiance);
-        const double all[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
-        for (std::size_t j = 0; j < 6; ++j) arriving.d[j].push_back(all[j]);
+        arriving.Add(wi, wo, wi.z / ((of_lobe + wi.z * kInvPi + glow_density * glow) * each), radiance);
       };
       const auto add_local = [&](const Vec3& wi) {
         if (wi.z <= kLowest) return;
@@ -124,18 +144,12 @@ LitSphere SkySphere(const ShownBrdf& brdf, const SlopeCoordinates& coordinates, 
       }
       brdf(arriving.arrays(), &f_r, &known);
       const std::size_t pixel = PixelIndex(column, static_cast<int>(row), kSkySize);
-      std::size_t unknown = 0;
-      Color sum = {0, 0, 0};
-      for (std::size_t i = 0; i < arriving.size(); ++i) {
-        if (known[i] == 0) {
-          ++unknown;
-          continue;
-        }
-        for (std::size_t c = 0; c < channels; ++c) values[c] = f_r[c][i];
-        const Color color = to_color.Linear(values.data());
-        for (std::size_t k = 0; k < 3; ++k) sum[k] += color[k] * arriving.radiance[i][k] * arriving.weight[i];
+      // A channel at a time: its colour weighs the sum of what all directions send on.
+      for (std::size_t c = 0; c < channels; ++c) {
+        const Color sum = arriving.Sum(f_r[c], known), of_channel = to_color.OfChannel(c);
+        for (std::size_t k = 0; k < 3; ++k) sphere.color[pixel][k] += of_channel[k] * sum[k];
       }
-      sphere.color[pixel] = sum;
+      const auto unknown = static_cast<std::size_t>(std::count(known.begin(), known.end(), 0));
       sphere.known[pixel] = 4 * unknown <= arriving.size() ? 1 : 0;
     }
   });

@@ -40,10 +40,9 @@ bool IsLinearInChannels(const Model& model) {
 
 ColoredFit InColors(const Material& material, const ChannelColor& to_color) {
   const std::size_t channels = material.channels.size();
-  const std::vector<std::array<double, 3>>& weights = to_color.weights();
   std::array<double, 3> sums = {0, 0, 0};
-  for (const std::array<double, 3>& weight : weights) {
-    for (std::size_t k = 0; k < 3; ++k) sums[k] += weight[k];
+  for (std::size_t c = 0; c < channels; ++c) {
+    for (std::size_t k = 0; k < 3; ++k) sums[k] += to_color.OfChannel(c)[k];
   }
   const bool has_means = *std::min_element(sums.begin(), sums.end()) > 0;
   if (channels <= 3 || material.sel || !has_means || !IsLinearInChannels(material.model))
@@ -56,7 +55,7 @@ ColoredFit InColors(const Material& material, const ChannelColor& to_color) {
     std::vector<double>& means = colored.parameters[i].values;
     means.assign(3, 0.0);
     for (std::size_t c = 0; c < channels; ++c) {
-      for (std::size_t k = 0; k < 3; ++k) means[k] += weights[c][k] / sums[k] * material.parameters[i].values[c];
+      for (std::size_t k = 0; k < 3; ++k) means[k] += to_color.OfChannel(c)[k] / sums[k] * material.parameters[i].values[c];
     }
   }
   return {FittedFunction(colored),

@@ -11,7 +11,7 @@
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/plot/color.h"
 #include "lobefit/report/figures/fitted_function.h"
-#include "lobefit/report/panels/isotropic_lookup.h"
+#include "lobefit/report/figures/isotropic_lookup.h"
 
 namespace lobefit {
 

@@ -23,7 +23,7 @@ bool HasHoles(const LitSphere& sphere) { return std::count(sphere.known.begin(),
 
 struct Spheres {
   std::array<LitSphere, 4> sphere;  // measured and fitted under the light, under the sky
-  std::array<double, 2> exposure;
+  std::array<cv::Mat, 4> picture;
   bool measured = false;  // else only the fitted ones
   bool sky = false;       // measured under the sky too
 };
@@ -57,8 +57,7 @@ void Draw(const Spheres& spheres, Canvas* canvas, const Box& content) {
     const bool is_fitted = k % 2 == 1;
     if (!is_fitted && !(k == 0 ? spheres.measured : spheres.sky)) continue;
     const Box box = {x, content.y + 42, size, size};
-    const cv::Mat picture = Rendered(spheres.sphere[k], spheres.exposure[k / 2]);
-    canvas->Image(RoundPicture(picture, static_cast<int>(std::lround(size * canvas->scale()))), box, false);
+    canvas->Image(RoundPicture(spheres.picture[k], static_cast<int>(std::lround(size * canvas->scale()))), box, false);
     canvas->Text({box.center().x, content.y + 34}, is_fitted ? "fitted" : "measured",
                  style::Body(style::kInk, Align::kCenter));
     const bool pair = k < 2 ? spheres.measured : spheres.sky;
@@ -85,8 +84,7 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
     lobe.v[2] = lobe.v[4] = std::max(lobe.v[2], std::log(kFarOut));
   const auto spheres = std::make_shared<Spheres>();
   if (data.measurement.isotropic) {
-    const IsotropicLookup lookup(data.measurement);
-    const ShownBrdf measured = Shown(lookup, data.channels());
+    const ShownBrdf measured = Shown(data.lookup(), data.channels());
     spheres->sphere[0] = LightSphere(measured, to_color, data.channels(), rows);
     spheres->measured = IsCovered(spheres->sphere[0]);
     if (spheres->measured)
@@ -98,8 +96,12 @@ std::optional<Panel> SpherePanel(const ReportData& data) {
   spheres->sphere[3] = SkySphere(fitted, lobe, colored.to_color, colored.function.channels(),
                                  spheres->sky ? kSkySamples : kSkySamplesOfAModel, data.threads);
   // One exposure for a pair: the measured sphere sets it.
-  spheres->exposure = {SphereExposure(spheres->sphere[spheres->measured ? 0 : 1]),
-                       SphereExposure(spheres->sphere[spheres->sky ? 2 : 3])};
+  const std::array<double, 2> exposure = {SphereExposure(spheres->sphere[spheres->measured ? 0 : 1]),
+                                          SphereExposure(spheres->sphere[spheres->sky ? 2 : 3])};
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (k % 2 == 1 || (k == 0 ? spheres->measured : spheres->sky))
+      spheres->picture[k] = Rendered(spheres->sphere[k], exposure[k / 2]);
+  }
   Panel panel;
   panel.id = "sphere";
   panel.title = "As it looks";

@@ -14,7 +14,6 @@
 #include "lobefit/plot/color.h"
 #include "lobefit/plot/style.h"
 #include "lobefit/plot/table.h"
-#include "lobefit/report/panels/isotropic_lookup.h"
 #include "lobefit/report/panels/sphere.h"
 
 namespace lobefit {
@@ -46,7 +45,7 @@ Json List(const Items& items, const F& json) {
 
 // The measured values for the sphere: 16-bit logarithms of linear red, green, blue; 0: not known.
 Json TableJson(const ReportData& data, const ChannelColor& to_color) {
-  const IsotropicLookup lookup(data.measurement);
+  const IsotropicLookup& lookup = data.lookup();
   const std::size_t width = kTable[0], height = kTable[1], depth = kTable[2], texels = width * height * depth;
   std::vector<std::array<double, 3>> colors(texels, {std::nan(""), 0, 0});
   double high = 0;
@@ -90,7 +89,7 @@ double SurfaceOverReading(const ReportData& data, std::size_t channel, std::size
 }
 
 Json SlicesJson(const ReportData& data) {
-  const Slices slices = GatherSlices(data.measurement, data.staying);
+  const Slices& slices = data.slices();
   std::size_t total = 0;
   for (const Slice& slice : slices.slices)
     total += std::min(slice.points.size(), kMostPointsOfASlice) * data.shown_channels.size();

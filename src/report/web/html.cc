@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "lobefit/base/process/parallel.h"
 #include "lobefit/base/text/base64.h"
 #include "lobefit/base/text/printable.h"
 #include "lobefit/base/text/text.h"
@@ -36,21 +37,37 @@ struct Figure {
   bool wide = true;
 };
 
-std::vector<Figure> DrawFigures(const std::vector<Panel>& panels, const std::shared_ptr<Fonts>& fonts,
-                                std::size_t most_bytes) {
+Figure DrawFigure(const Panel& panel, double scale, const std::shared_ptr<Fonts>& fonts) {
+  const Canvas canvas = DrawPanelAlone(panel, panel.wide ? 850 : 430, scale, fonts);
+  return {panel.id, Description(panel), EncodePng(canvas.pixels(), 0), panel.wide};
+}
+
+struct Contents {
   std::vector<Figure> figures;
-  // Sharp on dense screens, unless the page would grow too large.
-  for (const double scale : {1.5, 1.0}) {
-    figures.clear();
-    std::size_t bytes = 0;
-    for (const Panel& panel : panels) {
-      const Canvas canvas = DrawPanelAlone(panel, panel.wide ? 850 : 430, scale, fonts);
-      figures.push_back({panel.id, Description(panel), EncodePng(canvas.pixels(), 0), panel.wide});
-      bytes += figures.back().png.size();
+  std::string data;
+};
+
+Contents MakeContents(const ReportData& data, const std::vector<Panel>& panels, bool live,
+                      const std::shared_ptr<Fonts>& fonts) {
+  constexpr std::size_t kMostBytes = 1500000;
+  constexpr double kSharp = 1.5;  // on dense screens, unless the page would grow too large
+  Contents contents;
+  contents.figures.resize(panels.size());
+  // The data and each figure at the same time.
+  ParallelFor(panels.size() + 1, data.threads, [&](std::size_t k) {
+    if (k > 0) {
+      contents.figures[k - 1] = DrawFigure(panels[k - 1], kSharp, fonts);
+    } else if (live) {
+      contents.data = DataJson(data);
     }
-    if (bytes <= most_bytes) break;
+  });
+  std::size_t bytes = 0;
+  for (const Figure& figure : contents.figures) bytes += figure.png.size();
+  if (bytes > kMostBytes) {
+    ParallelFor(panels.size(), data.threads,
+                [&](std::size_t k) { contents.figures[k] = DrawFigure(panels[k], 1, fonts); });
   }
-  return figures;
+  return contents;
 }
 
 std::string FigureHtml(const Figure& figure) {
@@ -111,7 +128,8 @@ std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels,
   const Badge badge = BadgeOf(material);
   const bool live = IsLive(material.model);
   std::string wide, narrow;
-  for (const Figure& figure : DrawFigures(panels, fonts, 1500000)) (figure.wide ? wide : narrow) += FigureHtml(figure);
+  const Contents contents = MakeContents(data, panels, live, fonts);
+  for (const Figure& figure : contents.figures) (figure.wide ? wide : narrow) += FigureHtml(figure);
   return FillTemplate(kPageHtml,
                       {{"title", MarkupText(std::filesystem::path(file).filename().string())},
                        {"style", std::string(kPageCss)},
@@ -121,7 +139,7 @@ std::string ReportHtml(const ReportData& data, const std::vector<Panel>& panels,
                        {"shader", Join({"#version 300 es\nprecision highp float;\nprecision highp int;\n",
                                         std::string(kLobeGlsl), std::string(kPageGlsl)},
                                        "")},
-                       {"data", live ? DataJson(data) : ""},
+                       {"data", contents.data},
                        {"verdict", badge.words},
                        {"verdict-class", badge.mark == BadgeMark::kGood    ? ""
                                          : badge.mark == BadgeMark::kRough ? "rough"

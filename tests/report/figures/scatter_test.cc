@@ -6,7 +6,7 @@
 #include "tests/report/synthetic.h"
 #include <gtest/gtest.h>
 
-#include "lobefit/report/panels/isotropic_lookup.h"
+#include "lobefit/report/figures/isotropic_lookup.h"
 
 namespace lobefit {
 namespace {

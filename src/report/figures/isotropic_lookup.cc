@@ -1,4 +1,4 @@
-#include "lobefit/report/panels/isotropic_lookup.h"
+#include "lobefit/report/figures/isotropic_lookup.h"
 
 #include <algorithm>
 #include <array>
@@ -19,9 +19,8 @@ struct Coordinates {
   double h, d, phi;  // each in [0, 1]
 };
 
-Coordinates CoordinatesOf(const Vec3& wi, const Vec3& wo) {
-  const HalfDifference angles = ToHalfDifference(wi, wo);
-  double phi = std::fabs(std::remainder(angles.phi_d, kPi));  // [0, pi / 2]
+Coordinates CoordinatesOf(const HalfDifference& angles) {
+  const double phi = std::fabs(std::remainder(angles.phi_d, kPi));  // [0, pi / 2]
   return {std::sqrt(std::min(1.0, angles.theta_h / (kPi / 2))), std::min(1.0, angles.theta_d / (kPi / 2)),
           phi / (kPi / 2)};
 }
@@ -45,7 +44,8 @@ IsotropicLookup::IsotropicLookup(const Measurement& measurement) : channels_(mea
   constexpr std::size_t kTaken = 500000;
   const std::size_t step = 1 + samples.size() / kTaken;
   for (std::size_t i = 0; i < samples.size(); i += step) {
-    const Coordinates c = CoordinatesOf(samples.wi(i), samples.wo(i));
+    // Samples of a table lie on the bounds of cells: not by the faster formula, which would move them about by rounding.
+    const Coordinates c = CoordinatesOf(ToHalfDifference(samples.wi(i), samples.wo(i)));
     const std::size_t cell =
         (Cell(c.h, kCells[0]) * kCells[1] + Cell(c.d, kCells[1])) * kCells[2] + Cell(c.phi, kCells[2]);
     float* sum = &sums[cell * width];
@@ -94,7 +94,7 @@ bool IsotropicLookup::FindInFullCells(double h, double d, double phi, double* f_
 }
 
 bool IsotropicLookup::Find(const Vec3& wi, const Vec3& wo, double* f_r) const {
-  const Coordinates at = CoordinatesOf(wi, wo);
+  const Coordinates at = CoordinatesOf(ToFoldedHalfDifference(wi, wo));
   if (FindInFullCells(at.h, at.d, at.phi, f_r)) return true;
   std::array<ScatterTree::Neighbour, ScatterTree::kMost> found;
   const int have = tree_->Nearest(PointOf(at), 6, &found);

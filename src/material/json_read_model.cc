@@ -1,0 +1,156 @@
+// The model of a document, its parameters, and a table of lobes.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "lobefit/material/json_reader.h"
+
+namespace lobefit {
+
+Model ReadModel(const JsonReader& reader) {
+  const Json& json = reader.Member(reader.root(), "model");
+  Model model;
+  for (const Json& lobe : reader.Member(json, "lobes")) {
+    Lobe read = {reader.GetChoice(lobe, "ndf", NdfChoices()), reader.GetChoice(lobe, "masking", MaskingChoices()),
+                 reader.GetChoice(lobe, "fresnel", FresnelChoices()),
+                 lobe.contains("metal") ? reader.Get<std::string>(lobe, "metal") : ""};
+    if (lobe.contains("direction")) read.direction = reader.GetChoice(lobe, "direction", LobeDirectionChoices());
+    if (lobe.contains("knots")) {
+      try {
+        read.grid = GridWithKnots(reader.GetNumbers(lobe, "knots", 1));
+      } catch (const InputError& error) {
+        reader.Fail(error.what());
+      }
+    }
+    model.lobes.push_back(read);
+  }
+  model.diffuse = reader.GetChoice(json, "diffuse", DiffuseChoices());
+  if (model.lobes.empty() && !reader.root().contains("sel")) reader.Fail("model has no lobe");
+  if (model.lobes.empty()) return model;
+  if (const std::string why = WhyNotEvaluable(model); !why.empty()) reader.Fail(why);
+  return model;
+}
+
+namespace {
+
+double InRange(const JsonReader& reader, const Json& object, const char* name, double low, double high) {
+  const double value = reader.Get<double>(object, name);
+  if (!(value >= low && value <= high)) {
+    reader.Fail(
+        fmt::format("member '{}' of the table of lobes is {:g}; it must lie in [{:g}, {:g}]", name, value, low, high));
+  }
+  return value;
+}
+
+std::vector<double> PerChannel(const JsonReader& reader, const Json& object, const char* name, std::size_t channels) {
+  const std::vector<double> values = reader.Get<std::vector<double>>(object, name);
+  if (values.size() != channels) {
+    reader.Fail(
+        fmt::format("member '{}' of the table of lobes has {} values, {} belong there", name, values.size(), channels));
+  }
+  for (const double value : values) {
+    if (!(value >= 0) || !std::isfinite(value))
+      reader.Fail(fmt::format("member '{}' of the table of lobes is below 0", name));
+  }
+  return values;
+}
+
+}  // namespace
+
+SelTable ReadSel(const JsonReader& reader, std::size_t channels) {
+  const Json& json = reader.Member(reader.root(), "sel");
+  SelTable table;
+  const std::string quantity = reader.Get<std::string>(json, "quantity");
+  table.quantity = quantity == NameOf(SelQuantity::kBrdf) ? SelQuantity::kBrdf : SelQuantity::kBrdfCosineO;
+  if (quantity != NameOf(table.quantity))
+    reader.Fail(fmt::format("quantity '{}' of the table of lobes is not known", quantity));
+  table.isotropic = reader.Get<bool>(json, "isotropic");
+  table.bound = reader.Get<bool>(json, "bound");
+  for (const Json& entry : reader.Member(json, "slices")) {
+    SelSlice slice;
+    slice.theta_i = DegreesToRadians(InRange(reader, entry, "theta_i_deg", 0, 90));
+    slice.phi_i = DegreesToRadians(InRange(reader, entry, "phi_i_deg", -360, 360));
+    slice.constant = PerChannel(reader, entry, "constant", channels);
+    for (const Json& lobe : reader.Member(entry, "lobes")) {
+      SelShape shape;
+      shape.alpha_x = InRange(reader, lobe, "alpha_x", 1e-6, 1);
+      shape.alpha_y = InRange(reader, lobe, "alpha_y", 1e-9, shape.alpha_x);
+      shape.offset_in = DegreesToRadians(InRange(reader, lobe, "offset_in_deg", -180, 180));
+      shape.offset_across = DegreesToRadians(InRange(reader, lobe, "offset_across_deg", -180, 180));
+      shape.psi = DegreesToRadians(InRange(reader, lobe, "psi_deg", -360, 360));
+      slice.lobes.push_back(shape);
+      slice.amplitude.push_back(PerChannel(reader, lobe, "amplitude", channels));
+    }
+    if (!table.slices.empty() && table.slices[0].lobes.size() != slice.lobes.size())
+      reader.Fail("the slices of the table of lobes have different numbers of lobes");
+    table.slices.push_back(slice);
+  }
+  if (table.slices.empty()) reader.Fail("the table of lobes has no slice");
+  return table;
+}
+
+namespace {
+
+// Values that a model can be evaluated at: wider than the bounds of a fit where a recipe may widen them or where slope
+// coordinates go beyond them.
+void CheckRange(const JsonReader& reader, const Parameter& parameter, double value) {
+  constexpr double kWidest = 10;  // of the slope coordinates
+  const bool is_shape = parameter.group == ParameterGroup::kShape;
+  const bool is_width = is_shape && parameter.name.find("alpha") != std::string::npos;
+  if (!std::isfinite(value)) reader.Fail(fmt::format("parameter '{}' has no finite value", parameter.json_name));
+  const double factor = InsideFactor(parameter);
+  const double slack = parameter.unit == "deg" ? 1e-9 : 0;  // rounding of degrees
+  if (is_width && !(value > 0 && value <= std::max(kWidest, parameter.high))) {
+    reader.Fail(fmt::format("parameter '{}' is {:g}; it must be above 0 and at most {:g}", parameter.json_name, value,
+                            std::max(kWidest, parameter.high)));
+  }
+  if (is_shape && !is_width && !(value >= parameter.low - slack && value <= parameter.high + slack)) {
+    reader.Fail(fmt::format("parameter '{}' is {:g}; it must lie in [{:g}, {:g}]", parameter.json_name, value / factor,
+                            parameter.low / factor, parameter.high / factor));
+  }
+  if (!is_shape && value < 0)
+    reader.Fail(fmt::format("parameter '{}' is {:g}; it must not be below 0", parameter.json_name, value));
+}
+
+}  // namespace
+
+void ReadParameters(const JsonReader& reader, Material* material) {
+  const Json& json = reader.Member(reader.root(), "parameters");
+  for (const Parameter& parameter : Parameters(material->model)) {
+    const Json& entry = reader.Member(json, parameter.json_name.c_str());
+    const double factor = InsideFactor(parameter);
+    FittedParameter fitted;
+    fitted.values = reader.GetNumbers(entry, "value", factor);
+    fitted.standard_error = reader.GetNumbers(entry, "stderr", factor);
+    fitted.standard_error_clustered = reader.GetNumbers(entry, "stderr_clustered", factor);
+    if (entry.contains("clustered_freedom")) fitted.freedom = reader.GetNumbers(entry, "clustered_freedom", 1);
+    if (entry.contains("stderr_freedom")) fitted.independent_freedom = reader.GetNumbers(entry, "stderr_freedom", 1);
+    if (entry.contains("stderr_by_file")) {
+      fitted.standard_error_by_file = reader.GetNumbers(entry, "stderr_by_file", factor);
+      fitted.freedom_by_file = reader.GetNumbers(entry, "by_file_freedom", 1);
+    }
+    fitted.free = reader.Get<bool>(entry, "free");
+    fitted.at_bound = reader.Get<bool>(entry, "at_bound");
+    const std::size_t expected = parameter.per_channel ? material->channels.size() : 1;
+    if (fitted.values.size() != expected) {
+      reader.Fail(fmt::format("parameter '{}' has {} values, {} belong there", parameter.json_name,
+                              fitted.values.size(), expected));
+    }
+    for (const double value : fitted.values) {
+      CheckRange(reader, parameter, value);
+    }
+    material->parameters.push_back(fitted);
+  }
+  const std::size_t coat = CoatOf(material->model);
+  if (coat == material->model.lobes.size()) return;
+  constexpr double kMostIndex = 1000;  // beyond any medium; far beyond, nothing enters and the rest divides by that
+  const std::vector<double>& ior = material->parameters[FirstFresnel(material->model, coat)].values;
+  for (const double value : ior) {
+    if (!(value >= 1 && value <= kMostIndex))
+      reader.Fail(fmt::format("the coat's ior is {:g}; it must lie in [1, {:g}]", value, kMostIndex));
+    if (value != ior[0]) reader.Fail("the coat's ior differs from channel to channel; it is one for all");
+  }
+}
+
+}  // namespace lobefit
