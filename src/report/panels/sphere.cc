@@ -55,7 +55,8 @@ ColoredFit InColors(const Material& material, const ChannelColor& to_color) {
     std::vector<double>& means = colored.parameters[i].values;
     means.assign(3, 0.0);
     for (std::size_t c = 0; c < channels; ++c) {
-      for (std::size_t k = 0; k < 3; ++k) means[k] += to_color.OfChannel(c)[k] / sums[k] * material.parameters[i].values[c];
+      for (std::size_t k = 0; k < 3; ++k)
+        means[k] += to_color.OfChannel(c)[k] / sums[k] * material.parameters[i].values[c];
     }
   }
   return {FittedFunction(colored),
