@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "lobefit/fit/errors/clusters.h"
 #include "lobefit/fit/errors/leave_one_out.h"
@@ -96,10 +97,10 @@ class Filler {
     return run;
   }
 
-  // An incidence with the prior of its gain.
-  Cluster Whole(const Run::Part& part) const {
-    Cluster cluster = part.cluster;
-    cluster.curvature = Symmetric(cluster.curvature);
+  // An incidence with both halves of its curvature and the prior of its gain.
+  Cluster Whole(Run::Part part) const {
+    Cluster cluster = std::move(part.cluster);
+    cluster.curvature.triangularView<Eigen::StrictlyUpper>() = cluster.curvature.transpose();
     if (bread_.lean.empty()) return cluster;
     const Gains& gains = *problem_.gains();
     const Eigen::VectorXd& lean = bread_.lean[part.group];
@@ -144,9 +145,9 @@ class Filler {
   // Ends an incidence within a run.
   void Close(Run::Part* part, Run* run) const {
     if (run->open.empty()) {
-      run->open.push_back(*part);
+      run->open.push_back(std::move(*part));
     } else {
-      run->tally->Add(Whole(*part));
+      run->tally->Add(Whole(std::move(*part)));
     }
     part->cluster = Cluster(run->tally->freedom());
   }
@@ -192,14 +193,14 @@ Filling FillSandwich(const Problem& problem, const Layout& layout, const std::ve
         if (open && open->group == part.group) {
           open->cluster.Add(part.cluster);
         } else {
-          if (open) tally.Add(filler.Whole(*open));
+          if (open) tally.Add(filler.Whole(std::move(*open)));
           open = std::move(part);
         }
       }
       tally.Merge(*run.tally);
     }
   }
-  if (open) tally.Add(filler.Whole(*open));
+  if (open) tally.Add(filler.Whole(std::move(*open)));
   Filling filling = {Symmetric(tally.scatter()), tally.freedom().OfSamples(), Symmetric(tally.filling()),
                      tally.freedom().OfClusters(tally.scatter())};
   AddKnown(bread.prior_of_gains + bread.prior_of_coordinates, numbers, &filling.samples, &filling.samples_freedom);
