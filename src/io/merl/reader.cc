@@ -97,7 +97,7 @@ class MerlTable {
     for (std::size_t k = 0; k < columns_; ++k) {
       const double dx = f.sin_d * phi_d_.cos[k];
       const double red = Load(first + k, 0), green = Load(first + k, 1), blue = Load(first + k, 2);
-      const bool above = (Wz(f, dx) > kHorizon) & (Wz(f, -dx) > kHorizon);
+      const bool above = std::min(Wz(f, dx), Wz(f, -dx)) > kHorizon;
       const bool hole = (red < 0) | (green < 0) | (blue < 0);
       fates[k] = !above ? kBelow : hole ? kHole : !std::isfinite(red + green + blue) ? kNotFinite : kUsable;
     }
