@@ -9,6 +9,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/process/parallel.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/errors/file_clusters.h"
 #include "lobefit/fit/errors/uncertainty.h"
 #include "lobefit/fit/found.h"
@@ -21,7 +22,6 @@
 #include "lobefit/fit/instrument_report.h"
 #include "lobefit/fit/model_report.h"
 #include "lobefit/fit/noise_rounds.h"
-#include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/prediction.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/profile_knots.h"

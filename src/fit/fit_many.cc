@@ -7,7 +7,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/process/parallel.h"
 #include "lobefit/core/brdf/lobe.h"
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/search.h"
 #include "lobefit/fit/search/solve.h"

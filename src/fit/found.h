@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/errors/uncertainty.h"
 #include "lobefit/fit/last_descent.h"
-#include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/energy_rule.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/fit_options.h"

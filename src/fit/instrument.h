@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/search.h"
 #include "lobefit/measurement/incidence.h"

@@ -10,8 +10,8 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/fit/compare.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/inference/energy_balance.h"
-#include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/prediction.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/rung.h"

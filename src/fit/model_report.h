@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/errors/file_clusters.h"
 #include "lobefit/fit/errors/uncertainty.h"
-#include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/distinct.h"
 #include "lobefit/material/material.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lobefit/core/brdf/model.h"
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"

@@ -7,10 +7,10 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/process/parallel.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/fit/inference/noise_bias.h"
 #include "lobefit/fit/inference/outlier_pull.h"
-#include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/math/vec.h"
 #include "lobefit/measurement/incidence.h"

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/fit.h"
-#include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/synthesis/instrument.h"
 

@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/errors/bread.h"
-#include "lobefit/fit/objective/coordinates.h"
 
 namespace lobefit {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lobefit/base/process/parallel.h"
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/measurement/incidence.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "lobefit/fit/errors/clusters.h"
-#include "lobefit/fit/objective/kernel_arrays.h"
+#include "lobefit/fit/kernel/kernel_arrays.h"
 #include "lobefit/fit/search/symmetric_eigen.h"
 
 namespace lobefit {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "lobefit/fit/objective/kernel_arrays.h"
+#include "lobefit/fit/kernel/kernel_arrays.h"
 
 namespace lobefit {
 

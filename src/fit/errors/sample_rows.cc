@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "lobefit/fit/objective/kernel_arrays.h"
+#include "lobefit/fit/kernel/kernel_arrays.h"
 
 namespace lobefit {
 

@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 
+#include "lobefit/fit/coordinates/coordinates.h"
+#include "lobefit/fit/kernel/kernel.h"
 #include "lobefit/fit/metric/loss.h"
-#include "lobefit/fit/objective/coordinates.h"
-#include "lobefit/fit/objective/kernel.h"
 
 namespace lobefit {
 

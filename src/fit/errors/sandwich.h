@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 
 #include "lobefit/base/process/parallel.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/errors/bread.h"
-#include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/measurement/incidence.h"
 

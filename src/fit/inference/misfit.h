@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/incidence.h"

@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/errors/uncertainty.h"
 #include "lobefit/fit/inference/noise_estimate.h"
-#include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 
 namespace lobefit {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "lobefit/base/process/parallel.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/errors/uncertainty.h"
 #include "lobefit/fit/metric/metric.h"
-#include "lobefit/fit/objective/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 
 namespace lobefit {

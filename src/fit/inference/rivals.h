@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/search.h"
 #include "lobefit/material/material.h"

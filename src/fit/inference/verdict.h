@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lobefit/base/process/parallel.h"
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/incidence.h"

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "lobefit/base/process/parallel.h"
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 
 namespace lobefit {
 

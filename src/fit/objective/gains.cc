@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 
 namespace lobefit {

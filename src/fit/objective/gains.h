@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "lobefit/base/process/parallel.h"
-#include "lobefit/fit/objective/kernel.h"
+#include "lobefit/fit/kernel/kernel.h"
 #include "lobefit/measurement/incidence.h"
 
 namespace lobefit {

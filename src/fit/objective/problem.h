@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lobefit/base/process/parallel.h"
-#include "lobefit/fit/objective/kernel.h"
+#include "lobefit/fit/kernel/kernel.h"
 #include "lobefit/fit/objective/sigma_weights.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"

@@ -7,7 +7,7 @@
 
 #include "lobefit/core/brdf/brdf.h"
 #include "lobefit/core/ellipsoid/off_center.h"
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/math/directions.h"
 
 namespace lobefit {

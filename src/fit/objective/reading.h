@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "lobefit/fit/objective/kernel.h"
+#include "lobefit/fit/kernel/kernel.h"
 #include "lobefit/material/material.h"
 #include "lobefit/measurement/measurement.h"
 #include "lobefit/recipe/recipe.h"

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "lobefit/fit/objective/arrow.h"
+#include "lobefit/fit/coordinates/arrow.h"
 
 namespace lobefit {
 

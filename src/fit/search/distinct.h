@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/solve.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/search/search.h"
 #include "lobefit/fit/search/starts.h"
 #include "lobefit/math/directions.h"

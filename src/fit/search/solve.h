@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/gains.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/descent.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/measurement/measurement.h"
 

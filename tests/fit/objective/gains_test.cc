@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/solve.h"
 #include "lobefit/measurement/incidence.h"

@@ -1,5 +1,5 @@
 // Steps and fits of many channels through the arrow, against the dense matrix.
-#include "lobefit/fit/objective/arrow.h"
+#include "lobefit/fit/coordinates/arrow.h"
 
 #include <cmath>
 #include <random>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lobefit/core/brdf/diffuse.h"
-#include "lobefit/fit/objective/kernel.h"
+#include "lobefit/fit/kernel/kernel.h"
 
 namespace lobefit {
 

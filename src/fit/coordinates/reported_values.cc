@@ -1,6 +1,6 @@
 // What is reported of a point: parameters, and how they move with the coordinates.
-#include "lobefit/fit/objective/coordinates.h"
-#include "lobefit/fit/objective/ellipsoid_entry.h"
+#include "lobefit/fit/coordinates/coordinates.h"
+#include "lobefit/fit/coordinates/ellipsoid_entry.h"
 
 namespace lobefit {
 

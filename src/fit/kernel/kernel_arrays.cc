@@ -1,4 +1,4 @@
-#include "lobefit/fit/objective/kernel_arrays.h"
+#include "lobefit/fit/kernel/kernel_arrays.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "lobefit/fit/objective/kernel.h"
-#include "lobefit/fit/objective/turned_axes.h"
+#include "lobefit/fit/kernel/kernel.h"
+#include "lobefit/fit/kernel/turned_axes.h"
 
 namespace lobefit {
 

@@ -1,5 +1,5 @@
 // Sums over samples, which the kernel gives by its columns, in the solver's coordinates.
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 
 namespace lobefit {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "lobefit/fit/objective/kernel.h"
-#include "lobefit/fit/objective/kernel_arrays.h"
+#include "lobefit/fit/kernel/kernel.h"
+#include "lobefit/fit/kernel/kernel_arrays.h"
 
 namespace lobefit {
 

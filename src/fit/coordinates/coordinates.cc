@@ -1,4 +1,4 @@
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,8 +13,8 @@
 
 #include <Eigen/Core>
 
-#include "lobefit/fit/objective/arrow.h"
-#include "lobefit/fit/objective/kernel.h"
+#include "lobefit/fit/coordinates/arrow.h"
+#include "lobefit/fit/kernel/kernel.h"
 #include "lobefit/recipe/recipe.h"
 
 namespace lobefit {

@@ -13,12 +13,12 @@
 #include "lobefit/core/brdf/diffuse.h"
 #include "lobefit/core/brdf/diffuse_facets.h"
 #include "lobefit/core/brdf/lobe.h"
-#include "lobefit/fit/objective/angle_differences.h"
-#include "lobefit/fit/objective/block_inputs.h"
-#include "lobefit/fit/objective/coat_stage.h"
-#include "lobefit/fit/objective/kernel.h"
-#include "lobefit/fit/objective/kernel_arrays.h"
-#include "lobefit/fit/objective/turned_axes.h"
+#include "lobefit/fit/kernel/angle_differences.h"
+#include "lobefit/fit/kernel/block_inputs.h"
+#include "lobefit/fit/kernel/coat_stage.h"
+#include "lobefit/fit/kernel/kernel.h"
+#include "lobefit/fit/kernel/kernel_arrays.h"
+#include "lobefit/fit/kernel/turned_axes.h"
 
 namespace lobefit {
 

@@ -1,10 +1,10 @@
-#include "lobefit/fit/objective/kernel.h"
+#include "lobefit/fit/kernel/kernel.h"
 
 #include <algorithm>
 #include <unordered_map>
 
-#include "lobefit/fit/objective/kernel_arrays.h"
-#include "lobefit/fit/objective/kernel_block.h"
+#include "lobefit/fit/kernel/kernel_arrays.h"
+#include "lobefit/fit/kernel/kernel_block.h"
 
 namespace lobefit {
 

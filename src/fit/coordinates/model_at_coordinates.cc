@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobefit/fit/objective/coordinates.h"
-#include "lobefit/fit/objective/ellipsoid_entry.h"
+#include "lobefit/fit/coordinates/coordinates.h"
+#include "lobefit/fit/coordinates/ellipsoid_entry.h"
 
 namespace lobefit {
 

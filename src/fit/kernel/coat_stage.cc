@@ -1,10 +1,10 @@
-#include "lobefit/fit/objective/coat_stage.h"
+#include "lobefit/fit/kernel/coat_stage.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "lobefit/core/brdf/coat.h"
-#include "lobefit/fit/objective/kernel_block.h"
+#include "lobefit/fit/kernel/kernel_block.h"
 
 namespace lobefit {
 namespace {

@@ -1,6 +1,6 @@
-#include "lobefit/fit/objective/arrow.h"
+#include "lobefit/fit/coordinates/arrow.h"
 
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 
 namespace lobefit {
 

@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "lobefit/core/ellipsoid/ellipsoid_symmetry.h"
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 
 namespace lobefit {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobefit/fit/objective/kernel.h"
+#include "lobefit/fit/kernel/kernel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "lobefit/core/brdf/brdf.h"
-#include "lobefit/fit/objective/coordinates.h"
+#include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/objective/problem.h"
 #include "lobefit/fit/search/solve.h"
 
