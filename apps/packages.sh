@@ -2,7 +2,7 @@
 build_packages=(
   g++ cmake ninja-build
   libboost-math-dev libceres-dev libeigen3-dev libhwy-dev libopencv-core-dev libopencv-imgproc-dev libopenexr-dev
-  libpng-dev libjpeg-dev libtiff-dev zlib1g-dev libfreetype-dev fonts-dejavu-core
+  libpng-dev libjpeg-dev libtiff-dev zlib1g-dev libfreetype-dev fonts-dejavu-core libjemalloc-dev
   libcli11-dev nlohmann-json3-dev rapidjson-dev libtomlplusplus-dev libfmt-dev libpugixml-dev libssl-dev
 )
 test_packages=(

@@ -132,37 +132,64 @@ void SelObjective::EvaluateLobes(const Prepared& at, std::size_t sample, bool de
 
 void SelObjective::FillRow(const Prepared& at, const LobeValues& values, Eigen::Index channel, double factor,
                            Row* row) const {
-  std::size_t entry = 0;
-  for (Eigen::Index l = 0; l < lobes_; ++l) {
+  row->channel = channel;
+  std::size_t entry = 0, own = static_cast<std::size_t>(kShape * lobes_);
+  for (Eigen::Index l = 0; l < lobes_; ++l, ++own) {
     const double a = at.linear(l * channels_ + channel) * factor;
     for (Eigen::Index j = 0; j < kShape; ++j, ++entry) {
       row->index[entry] = kShape * l + j;
       row->value[entry] = a * values.dk[static_cast<std::size_t>(l)][static_cast<std::size_t>(j)];
     }
-    row->index[entry] = Amplitude(l, channel);
-    row->value[entry++] = a * values.k[static_cast<std::size_t>(l)];
+    row->index[own] = Amplitude(l, channel);
+    row->value[own] = a * values.k[static_cast<std::size_t>(l)];
   }
-  row->index[entry] = Constant(channel);
-  row->value[entry] = at.linear(lobes_ * channels_ + channel) * factor;
+  row->index[own] = Constant(channel);
+  row->value[own] = at.linear(lobes_ * channels_ + channel) * factor;
 }
 
-void SelObjective::Row::AddTo(double weight, double residual, Eigen::MatrixXd* hessian,
-                              Eigen::VectorXd* gradient) const {
-  for (std::size_t p = 0; p < value.size(); ++p) {
-    (*gradient)(index[p]) += weight * value[p] * residual;
-    for (std::size_t q = 0; q < value.size(); ++q) (*hessian)(index[p], index[q]) += weight * value[p] * value[q];
+void SelObjective::AddSquare(const Row& row, double weight, Eigen::MatrixXd* hessian) const {
+  for (std::size_t p = 0; p < row.value.size(); ++p) {
+    for (std::size_t q = 0; q < row.value.size(); ++q)
+      (*hessian)(row.index[p], row.index[q]) += weight * row.value[p] * row.value[q];
   }
+}
+
+void SelObjective::AddSquare(const Row& row, double weight, ArrowMatrix* hessian) const {
+  const Eigen::Map<const Eigen::VectorXd> all(row.value.data(), static_cast<Eigen::Index>(row.value.size()));
+  const auto shapes = all.head(kShape * lobes_), own = all.tail(lobes_ + 1);
+  const auto c = static_cast<std::size_t>(row.channel);
+  hessian->border += weight * shapes * shapes.transpose();
+  hessian->across[c] += weight * shapes * own.transpose();
+  hessian->own[c] += weight * own * own.transpose();
+}
+
+ArrowMatrix SelObjective::EmptyArrow() const {
+  ArrowShape shape;
+  for (Eigen::Index k = 0; k < kShape * lobes_; ++k) shape.border.push_back(static_cast<int>(k));
+  for (Eigen::Index c = 0; c < channels_; ++c) {
+    shape.own.emplace_back();
+    for (Eigen::Index l = 0; l <= lobes_; ++l) shape.own.back().push_back(static_cast<int>(Amplitude(l, c)));
+  }
+  return ArrowMatrix(shape);
 }
 
 double SelObjective::SumSquares(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const {
+  if (hessian != nullptr) hessian->setZero(size(), size());
+  return Sum(u, hessian, gradient);
+}
+
+double SelObjective::SumSquares(const Coordinates& u, ArrowMatrix* hessian, Eigen::VectorXd* gradient) const {
+  *hessian = EmptyArrow();
+  return Sum(u, hessian, gradient);
+}
+
+template <class Gram>
+double SelObjective::Sum(const Coordinates& u, Gram* hessian, Eigen::VectorXd* gradient) const {
   const Prepared at(u, lobes_, channels_);
   const bool wanted = hessian != nullptr;
-  if (wanted) {
-    hessian->setZero(size(), size());
-    gradient->setZero(size());
-  }
+  if (wanted) gradient->setZero(size());
   const auto columns = static_cast<std::size_t>(kShape * lobes_ + lobes_ + 1);
-  Row row = {std::vector<Eigen::Index>(columns), std::vector<double>(columns)};
+  Row row = {std::vector<Eigen::Index>(columns), std::vector<double>(columns), 0};
   const LobeValues empty = {std::vector<double>(at.lobes.size()),
                             std::vector<std::array<double, kShape>>(at.lobes.size())};
   constexpr std::size_t kPiece = 64;
@@ -190,7 +217,8 @@ double SelObjective::SumSquares(const Coordinates& u, Eigen::MatrixXd* hessian, 
         sum += w * residual[i] * residual[i];
         if (!wanted) continue;
         FillRow(at, values[i], c, slope[i] * to_f[i], &row);
-        row.AddTo(w, residual[i], hessian, gradient);
+        for (std::size_t p = 0; p < columns; ++p) (*gradient)(row.index[p]) += w * row.value[p] * residual[i];
+        AddSquare(row, w, hessian);
       }
     }
   }

@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "lobefit/fit/coordinates/arrow.h"
 #include "lobefit/fit/sel/slice.h"
 
 namespace lobefit {
@@ -37,7 +38,9 @@ class SelObjective {
 
   // Sum of squares; with `hessian` also J^T J and J^T r.
   double SumSquares(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
-  // The pulls' part of the objective, added to hessian and gradient unless null.
+  // The same with the hessian (not null) as an arrow, the shapes its border: linear in the channels.
+  double SumSquares(const Coordinates& u, ArrowMatrix* hessian, Eigen::VectorXd* gradient) const;
+  // The pulls' part of the objective, added to gradient and to `hessian`, whose first rows are the shapes, unless null.
   double Pulls(const Coordinates& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
 
  private:
@@ -47,11 +50,12 @@ class SelObjective {
     std::vector<double> k;
     std::vector<std::array<double, kShape>> dk;
   };
-  // The entries of one residual's row of the Jacobian that are not zero.
+  // The entries of one residual's row of the Jacobian that are not zero: of the shapes of all lobes, then of the
+  // channel's amplitudes and its constant.
   struct Row {
     std::vector<Eigen::Index> index;
     std::vector<double> value;
-    void AddTo(double weight, double residual, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
+    Eigen::Index channel = 0;
   };
 
   Eigen::Index Amplitude(Eigen::Index lobe, Eigen::Index channel) const {
@@ -60,6 +64,11 @@ class SelObjective {
   Eigen::Index Constant(Eigen::Index channel) const { return Amplitude(lobes_, channel); }
   double High(Eigen::Index k) const;
   double Low(Eigen::Index k) const;
+  ArrowMatrix EmptyArrow() const;
+  template <class Gram>
+  double Sum(const Coordinates& u, Gram* hessian, Eigen::VectorXd* gradient) const;
+  void AddSquare(const Row& row, double weight, Eigen::MatrixXd* hessian) const;
+  void AddSquare(const Row& row, double weight, ArrowMatrix* hessian) const;
   void EvaluateLobes(const Prepared& at, std::size_t sample, bool derivatives, LobeValues* values) const;
   void FillRow(const Prepared& at, const LobeValues& values, Eigen::Index channel, double factor, Row* row) const;
   void AddPull(const SelPull& pull, Eigen::Index lobe, const Coordinates& u, double* sum, Eigen::MatrixXd* hessian,

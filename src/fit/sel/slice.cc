@@ -1,6 +1,7 @@
 #include "lobefit/fit/sel/slice.h"
 
 #include "lobefit/fit/search/descent.h"
+#include "lobefit/fit/search/solve.h"
 #include "lobefit/fit/sel/objective.h"
 
 namespace lobefit {
@@ -19,6 +20,11 @@ SelSliceFit FitSelSlice(const SelSamples& samples, const SelSlice& start, const 
   bounded.evaluate = [&](const Eigen::VectorXd& u, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) {
     return (objective.SumSquares(u, hessian, gradient) + objective.Pulls(u, hessian, gradient)) / 2;
   };
+  if (objective.size() >= static_cast<Eigen::Index>(kManyCoordinates)) {
+    bounded.evaluate_arrow = [&](const Eigen::VectorXd& u, ArrowMatrix* hessian, Eigen::VectorXd* gradient) {
+      return (objective.SumSquares(u, hessian, gradient) + objective.Pulls(u, &hessian->border, gradient)) / 2;
+    };
+  }
   DescentOptions descent_options;
   descent_options.max_iterations = options.max_iterations;
   descent_options.function_tolerance = 1e-7;

@@ -29,7 +29,7 @@ struct SelSliceFit {
   double sum_squares = 0;  // weighted, of the residuals
   double objective = 0;    // sum_squares and the pulls
   bool converged = false;
-  bool at_limit = false;  // a width, offset or amplitude stands at its limit (sel_objective.h)
+  bool at_limit = false;  // a width, offset or amplitude stands at its limit (objective.h)
   int iterations = 0;
 };
 
