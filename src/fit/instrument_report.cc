@@ -24,7 +24,7 @@ Eigen::Index EntriesOfModel(const Layout& layout) {
 
 // The clustered error where there are clusters.
 double ErrorOf(const Uncertainty& uncertainty, Eigen::Index row) {
-  const double variance = (uncertainty.has_clusters ? uncertainty.clustered : uncertainty.covariance)(row, row);
+  const double variance = (uncertainty.has_clusters ? uncertainty.clustered : uncertainty.covariance).Variance(row);
   return variance > 0 ? std::sqrt(variance) : kNan;
 }
 
@@ -44,9 +44,8 @@ void ReportGains(const Problem& problem, const Layout& layout, const std::vector
   std::vector<GainLink> links;
   Linearise(problem, layout, u.data(), pool, &hessian, &gradient, &links);
   for (std::size_t k = 0; k < links.size(); ++k) {
-    const Eigen::VectorXd lean = links[k].link / links[k].curvature;
     const double variance =
-        last.gains->residual_variance() / links[k].curvature + lean.dot(uncertainty.of_coordinates * lean);
+        last.gains->residual_variance() / links[k].curvature + uncertainty.gain_variance(static_cast<Eigen::Index>(k));
     const double gain = last.gains->gains()[k];
     instrument->gains.push_back(
         {PolarAngle(incidences.wi[k]), Azimuth(incidences.wi[k]), gain, gain * std::sqrt(variance)});
@@ -56,7 +55,7 @@ void ReportGains(const Problem& problem, const Layout& layout, const std::vector
 // The largest correlation of an entry with a tilt of a lobe; 0 where no tilt is free.
 double TiltCorrelation(const Layout& layout, const Uncertainty& uncertainty, Eigen::Index row) {
   const Model& model = layout.recipe().model;
-  const Eigen::MatrixXd& covariance = uncertainty.covariance;
+  const EntryCovariance& covariance = uncertainty.covariance;
   double largest = 0;
   Eigen::Index entry = 0;
   for (std::size_t i = 0; i < Parameters(model).size(); ++i) {
@@ -92,7 +91,7 @@ void ReportAlignment(const Layout& layout, const std::vector<double>& u, const U
     }
     instrument->alignment.push_back(angle);
   }
-  const Eigen::MatrixXd& covariance = uncertainty.has_clusters ? uncertainty.clustered : uncertainty.covariance;
+  const EntryCovariance& covariance = uncertainty.has_clusters ? uncertainty.clustered : uncertainty.covariance;
   const double square = covariance(first, first) * covariance(first + 1, first + 1);
   if (square > 0) instrument->alignment_correlation = covariance(first, first + 1) / std::sqrt(square);
   if (!any_tilt) return;

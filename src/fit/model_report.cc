@@ -29,7 +29,7 @@ std::vector<std::string> EntryNames(const std::vector<Parameter>& parameters,
 double SquareRoot(double variance) { return variance > 0 ? std::sqrt(variance) : kNan; }
 
 // Angles that are not determined because two alphas agree within the error; their intervals would mean nothing.
-void FlagEqualAlphas(const Eigen::MatrixXd& covariance, std::size_t first, Eigen::Index row, const std::string& prefix,
+void FlagEqualAlphas(const EntryCovariance& covariance, std::size_t first, Eigen::Index row, const std::string& prefix,
                      Material* material) {
   FittedParameter* p = material->parameters.data() + first;
   if (!p[0].free || !p[1].free || !p[4].free) return;
@@ -43,9 +43,6 @@ void FlagEqualAlphas(const Eigen::MatrixXd& covariance, std::size_t first, Eigen
                   prefix, prefix, sigmas));
 }
 
-// Numbers of which a document holds the covariance: 400 take 6 MB. Their square would be 160 MB of 800 channels.
-constexpr std::size_t kMostCovariances = 400;
-
 }  // namespace
 
 void ReportParameters(const Layout& layout, const std::vector<double>& u, const Uncertainty& uncertainty,
@@ -53,9 +50,9 @@ void ReportParameters(const Layout& layout, const std::vector<double>& u, const 
   const Recipe& recipe = layout.recipe();
   const std::vector<Parameter> parameters = Parameters(recipe.model);
   const ParameterValues values = layout.Report(u.data());
-  const Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
-  const Eigen::MatrixXd& covariance = uncertainty.covariance;
-  const Eigen::MatrixXd& clustered = uncertainty.clustered;
+  const SparseRows jacobian = layout.ReportJacobian(u.data());
+  const EntryCovariance& covariance = uncertainty.covariance;
+  const EntryCovariance& clustered = uncertainty.clustered;
   std::vector<Eigen::Index> free_rows;
   std::vector<double> factors;
   const std::vector<std::string> names = EntryNames(parameters, material->channels);
@@ -67,9 +64,9 @@ void ReportParameters(const Layout& layout, const std::vector<double>& u, const 
     fitted.free = recipe.IsFree(i);
     const bool shape = parameters[i].group == ParameterGroup::kShape;
     for (std::size_t c = 0; c < values[i].size(); ++c, ++row) {
-      fitted.standard_error.push_back(fitted.free ? SquareRoot(covariance(row, row)) : kNan);
+      fitted.standard_error.push_back(fitted.free ? SquareRoot(covariance.Variance(row)) : kNan);
       fitted.standard_error_clustered.push_back(
-          fitted.free && uncertainty.has_clusters ? SquareRoot(clustered(row, row)) : kNan);
+          fitted.free && uncertainty.has_clusters ? SquareRoot(clustered.Variance(row)) : kNan);
       fitted.freedom.push_back(std::isnan(fitted.standard_error_clustered.back())
                                    ? kNan
                                    : uncertainty.freedom[static_cast<std::size_t>(row)]);
@@ -87,7 +84,7 @@ void ReportParameters(const Layout& layout, const std::vector<double>& u, const 
     if (shape && fitted.free) {
       // A shape coordinate held at a bound marks the parameters that depend on it.
       for (std::size_t k = 0; k < layout.shape_size(); ++k) {
-        const double dependence = jacobian(row - 1, static_cast<Eigen::Index>(k));
+        const double dependence = jacobian.coeff(row - 1, static_cast<Eigen::Index>(k));
         fitted.at_bound =
             fitted.at_bound || (uncertainty.at_bound[k] && (std::isnan(dependence) || std::fabs(dependence) > 1e-9));
       }
@@ -108,7 +105,7 @@ void ReportParameters(const Layout& layout, const std::vector<double>& u, const 
                                            FresnelParameters(recipe.model.lobes[l].fresnel) * layout.channels());
     material->slope_space.push_back({off_center.slope_x, off_center.slope_y, ax, ay, off_center.q12 / (ax * ay)});
   }
-  if (free_rows.size() > kMostCovariances) {
+  if (!covariance.full() || free_rows.size() > kMostFull) {
     material->remarks.push_back(fmt::format(
         "the covariance of {} numbers is too large for the document: it holds that of the shapes; each number "
         "has its standard error",

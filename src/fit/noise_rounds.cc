@@ -38,7 +38,7 @@ std::unique_ptr<Found> FindUnderNoise(const Fitted& fitted, const FitOptions& op
     found = std::make_unique<Found>(*recipe, fitted.measurement, fitted.samples, fitted.incidences, options, pool);
   };
   const auto predict = [&] {
-    return PredictNoiseBias(found->layout, found->best().u, found->uncertainty.of_coordinates, fitted.samples,
+    return PredictNoiseBias(found->layout, found->best().u, found->uncertainty, fitted.samples,
                             fitted.incidences, pool);
   };
   search();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "lobefit/fit/coordinates/arrow.h"
 #include "lobefit/fit/kernel/kernel.h"
@@ -21,6 +22,10 @@ namespace lobefit {
 
 // The cosine of the difference angle for which the rules of means (LobeMeanRule) are made: 60 degrees.
 inline constexpr double kMeanCosine = 0.5;
+
+// Rows of many channels depend on the shape and their own channel only: dense products took half of the time of a fit
+// with 800 of them, and dense rows a third of its memory.
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 struct Coordinate {
   std::string name;  // for messages: "ln alpha_x", "f0[R]"
@@ -105,7 +110,7 @@ class Layout {
   // d(reported entry) / d(coordinate), rows over the flattened entries of Report, then over the coordinates of the
   // instrument: angles of the alignment, offsets of the channels. Rows of a lobe whose angles are not
   // differentiable (equal alphas) are NaN.
-  Eigen::MatrixXd ReportJacobian(const double* u) const;
+  SparseRows ReportJacobian(const double* u) const;
 
  private:
   struct Shape {

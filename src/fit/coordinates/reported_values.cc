@@ -24,15 +24,18 @@ ParameterValues Layout::Report(const double* u) const {
   return values;
 }
 
-Eigen::MatrixXd Layout::ReportJacobian(const double* u) const {
+SparseRows Layout::ReportJacobian(const double* u) const {
   std::size_t rows = linear_[0].size() * channels_ + shape_size_ - first_angle_;
   for (const Lobe& lobe : recipe_.model.lobes) rows += ShapeParameters(lobe);
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(size()));
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&entries](Eigen::Index row, std::size_t column, double value) {
+    if (value != 0) entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+  };
   Eigen::Index row = 0;
   std::size_t next = 0;
   const auto add_linear = [&] {
     for (std::size_t c = 0; c < channels_; ++c, ++row) {
-      if (linear_[c][next].index >= 0) jacobian(row, linear_[c][next].index) = 1;
+      if (linear_[c][next].index >= 0) add(row, static_cast<std::size_t>(linear_[c][next].index), 1);
     }
     ++next;
   };
@@ -42,28 +45,29 @@ Eigen::MatrixXd Layout::ReportJacobian(const double* u) const {
     if (shape.slope) EllipsoidFromSlopeCoordinates(SlopeAt(shape, u), slope_jacobian);
     Ellipsoid ellipsoid = EllipsoidAt(shape, u);
     for (std::size_t k = 0; k < shape.entries.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(shape.first + k);
+      const std::size_t column = shape.first + k;
       const int i = shape.entries[k];
       if (shape.slope) {
-        for (int j = 0; j < 5; ++j) jacobian(row + j, column) = slope_jacobian[5 * j + i];
+        for (int j = 0; j < 5; ++j) add(row + j, column, slope_jacobian[5 * j + i]);
       } else {
-        jacobian(row + i, column) = i < 2 ? *EllipsoidEntry(&ellipsoid, i) : 1.0;
-        if (i == 0 && shape.tied) jacobian(row + 1, column) = ellipsoid.alpha_y;
+        add(row + i, column, i < 2 ? *EllipsoidEntry(&ellipsoid, i) : 1.0);
+        if (i == 0 && shape.tied) add(row + 1, column, ellipsoid.alpha_y);
       }
     }
     row += 5;
     std::vector<double> slopes;
     const std::vector<double> profile = ProfileAt(l, u, &slopes);
     for (std::size_t k = 0; k < shape.profile.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(shape.first + shape.entries.size() + k);
-      jacobian(row + static_cast<Eigen::Index>(shape.profile[k]), column) = slopes[k];
+      add(row + static_cast<Eigen::Index>(shape.profile[k]), shape.first + shape.entries.size() + k, slopes[k]);
     }
     row += static_cast<Eigen::Index>(profile.size());
     for (std::size_t k = 0; k < FresnelParameters(recipe_.model.lobes[l].fresnel); ++k) add_linear();
   }
   for (std::size_t k = 0; k < DiffuseParameters(recipe_.model.diffuse); ++k) add_linear();
-  for (std::size_t k = first_angle_; k < shape_size_; ++k, ++row) jacobian(row, static_cast<Eigen::Index>(k)) = 1;
+  for (std::size_t k = first_angle_; k < shape_size_; ++k, ++row) add(row, k, 1);
   if (recipe_.instrument.offset) add_linear();
+  SparseRows jacobian(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(size()));
+  jacobian.setFromTriplets(entries.begin(), entries.end());
   return jacobian;
 }
 

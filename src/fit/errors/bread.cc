@@ -110,7 +110,8 @@ void AddPriors(const Problem& problem, const Layout& layout, double cost, const 
   const bool any = gains != nullptr || std::any_of(layout.coordinates().begin(), layout.coordinates().end(),
                                                    [](const Coordinate& coordinate) { return coordinate.observed; });
   if (!any) return;
-  bread->prior_of_gains = bread->prior_of_coordinates = Eigen::MatrixXd::Zero(bread->size(), bread->size());
+  const Eigen::Index border = bread->form.border;
+  bread->prior_of_gains = bread->prior_of_coordinates = Eigen::MatrixXd::Zero(border, border);
   for (std::size_t k = 0; gains != nullptr && k < gains->size(); ++k) {
     bread->lean.push_back(bread->whitening.transpose() * links[k].link / links[k].curvature);
     bread->prior_of_gains +=
@@ -119,14 +120,31 @@ void AddPriors(const Problem& problem, const Layout& layout, double cost, const 
   for (std::size_t i = 0; i < layout.size(); ++i) {
     const Coordinate& coordinate = layout.coordinates()[i];
     if (!coordinate.observed) continue;
-    const auto row = bread->whitening.row(static_cast<Eigen::Index>(i));
-    bread->prior_of_coordinates += variance * variance * coordinate.prior * row.transpose() * row;
+    const Eigen::VectorXd row = Eigen::VectorXd(bread->whitening.row(static_cast<Eigen::Index>(i))).head(border);
+    bread->prior_of_coordinates += variance * variance * coordinate.prior * row * row.transpose();
   }
+}
+
+// The blocks of A, scaled, that W is made of: as FreeArrow says, without what is held.
+struct Blocks {
+  Eigen::MatrixXd border;
+  std::vector<Eigen::MatrixXd> own, across;  // [channel]: own x own, own x border
+};
+
+Blocks BlocksOf(const Eigen::MatrixXd& a, const ArrowShape& free, const Eigen::VectorXd& scale) {
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
+  Blocks blocks = {Part(scaled, free.border, free.border), {}, {}};
+  for (const std::vector<int>& own : free.own) {
+    blocks.own.push_back(Part(scaled, own, own));
+    blocks.across.push_back(Part(scaled, own, free.border));
+  }
+  return blocks;
 }
 
 }  // namespace
 
-Bread FactorBread(const Problem& problem, const Layout& layout, const std::vector<double>& u, ThreadPool* pool) {
+Bread FactorBread(const Problem& problem, const Layout& layout, const std::vector<double>& u, ThreadPool* pool,
+                  std::size_t most_full) {
   const auto n = static_cast<Eigen::Index>(layout.size());
   Bread bread;
   bread.undetermined.assign(layout.size(), false);
@@ -143,22 +161,23 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
   }
   const Eigen::VectorXd scale = a.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 1.0; });
   if (layout.recipe().loss != Loss::kNone) a += LossCurvature(problem, layout, layout.ToKernel(u.data()), pool);
-  a = scale.asDiagonal() * a * scale.asDiagonal();
 
   // With D a channel's own block, E its block with the border and S the border's, T = D^-1 E:
   //   A^-1 = sum of own (D^-1) + (1, -T)^T (S - sum of E^T T)^-1 (1, -T).
   const ArrowShape arrow = FreeArrow(layout, bread.at_bound);
+  const Blocks blocks = BlocksOf(a, arrow, scale);
+  a.resize(0, 0);
   const std::size_t channels = layout.channels();
-  bread.border = static_cast<Eigen::Index>(arrow.border.size());
-  Eigen::Index columns = bread.border;
+  WhitenedForm& form = bread.form;
+  form.border = form.size = static_cast<Eigen::Index>(arrow.border.size());
   std::vector<Eigen::MatrixXd> roots(channels), t(channels);  // root root^T = D^-1 where it is not flat
-  Eigen::MatrixXd schur = Part(a, arrow.border, arrow.border);
+  Eigen::MatrixXd schur = blocks.border;
   for (std::size_t c = 0; c < channels; ++c) {
     const std::vector<int>& own = arrow.own[c];
-    bread.first.push_back(columns);
-    bread.own.push_back(static_cast<Eigen::Index>(own.size()));
-    columns += bread.own.back();
-    const SymmetricEigen eigen = Decomposed(Part(a, own, own));
+    form.first.push_back(form.size);
+    form.own.push_back(static_cast<Eigen::Index>(own.size()));
+    form.size += form.own.back();
+    const SymmetricEigen eigen = Decomposed(blocks.own[c]);
     Eigen::VectorXd factor(own.size());
     for (Eigen::Index k = 0; k < factor.size(); ++k) {
       const bool flat = eigen.values(k) < kFlat;
@@ -169,13 +188,13 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
       MarkFlat(layout, direction, &bread);
     }
     roots[c] = eigen.vectors * factor.asDiagonal();
-    const Eigen::MatrixXd e = Part(a, own, arrow.border);
-    t[c] = roots[c] * (roots[c].transpose() * e);
-    schur -= e.transpose() * t[c];
+    t[c] = roots[c] * (roots[c].transpose() * blocks.across[c]);
+    schur -= blocks.across[c].transpose() * t[c];
   }
+  form.full = layout.size() <= most_full || form.size == form.border;
   const SymmetricEigen eigen = Decomposed(schur);
-  bread.whitening.setZero(n, columns);
-  for (Eigen::Index k = 0; k < bread.border; ++k) {
+  Eigen::MatrixXd of_border = Eigen::MatrixXd::Zero(n, form.border);  // columns of W
+  for (Eigen::Index k = 0; k < form.border; ++k) {
     Eigen::VectorXd direction = Eigen::VectorXd::Zero(n);
     for (std::size_t i = 0; i < arrow.border.size(); ++i)
       direction(arrow.border[i]) = eigen.vectors(static_cast<Eigen::Index>(i), k);
@@ -187,25 +206,39 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
     if (eigen.values(k) < kFlat * direction.squaredNorm()) {
       MarkFlat(layout, direction, &bread);
     } else {
-      bread.whitening.col(k) = scale.cwiseProduct(direction) / std::sqrt(eigen.values(k));
+      of_border.col(k) = scale.cwiseProduct(direction) / std::sqrt(eigen.values(k));
     }
   }
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&entries](Eigen::Index row, Eigen::Index column, double value) {
+    if (value != 0) entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+  };
+  for (Eigen::Index k = 0; k < form.border; ++k) {
+    for (Eigen::Index i = 0; i < n; ++i) add(i, k, of_border(i, k));
+  }
   for (std::size_t c = 0; c < channels; ++c) {
-    for (std::size_t i = 0; i < arrow.own[c].size(); ++i) {
-      bread.whitening.row(arrow.own[c][i]).segment(bread.first[c], bread.own[c]) =
-          scale(arrow.own[c][i]) * roots[c].row(static_cast<Eigen::Index>(i));
+    // Rows of the channel's own coordinates are scaled, so that W W^T is the inverse of A as it is.
+    const std::vector<int>& own = arrow.own[c];
+    Eigen::MatrixXd root = roots[c];
+    for (Eigen::Index i = 0; i < root.rows(); ++i) root.row(i) *= scale(own[static_cast<std::size_t>(i)]);
+    for (Eigen::Index i = 0; i < root.rows(); ++i) {
+      for (Eigen::Index k = 0; k < root.cols(); ++k)
+        add(own[static_cast<std::size_t>(i)], form.first[c] + k, root(i, k));
     }
     const std::vector<int> coordinates = layout.CoordinatesOfColumns(c);
-    Eigen::MatrixXd whiten(coordinates.size(), bread.border + bread.own[c]);
-    whiten.setZero();
+    Eigen::MatrixXd whiten =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(coordinates.size()), form.border + form.own[c]);
     for (std::size_t j = 0; j < coordinates.size(); ++j) {
       if (coordinates[j] < 0) continue;
       const auto row = static_cast<Eigen::Index>(j);
-      whiten.row(row).head(bread.border) = bread.whitening.row(coordinates[j]).head(bread.border);
-      whiten.row(row).tail(bread.own[c]) = bread.whitening.row(coordinates[j]).segment(bread.first[c], bread.own[c]);
+      whiten.row(row).head(form.border) = of_border.row(coordinates[j]);
+      const auto at = std::find(own.begin(), own.end(), coordinates[j]);
+      if (at != own.end()) whiten.row(row).tail(form.own[c]) = root.row(at - own.begin());
     }
     bread.whiten_row.push_back(whiten);
   }
+  bread.whitening.resize(n, form.size);
+  bread.whitening.setFromTriplets(entries.begin(), entries.end());
   AddPriors(problem, layout, cost, links, &bread);
   return bread;
 }

@@ -10,6 +10,7 @@
 
 #include "lobefit/base/process/parallel.h"
 #include "lobefit/fit/coordinates/coordinates.h"
+#include "lobefit/fit/errors/whitened_matrix.h"
 #include "lobefit/fit/objective/problem.h"
 
 namespace lobefit {
@@ -22,10 +23,8 @@ namespace lobefit {
 // alone, and a fit of many channels costs no more a channel than one of few. A loss takes all channels of a sample
 // together, and so does a gain: then all is border. Gains are taken out of A as out of the step (gains.h).
 struct Bread {
-  // Columns of W: the border's, then channel by channel those of its own coordinates.
-  Eigen::Index border = 0;
-  std::vector<Eigen::Index> first, own;  // [channel]: where its own begin, and how many there are
-  Eigen::MatrixXd whitening;             // W, coordinates x columns; rows of held coordinates are 0
+  WhitenedForm form;     // of the columns of W
+  SparseRows whitening;  // W, coordinates x columns; rows of held coordinates are 0
   // [channel]: a row of the kernel's columns without the residual (KernelModel), times this, is the row times W: the
   // border's entries, then the channel's own.
   std::vector<Eigen::MatrixXd> whiten_row;
@@ -33,17 +32,17 @@ struct Bread {
   // coordinates when the gain follows them. The prior of a gain is one more row, its column the root of the precision.
   std::vector<Eigen::VectorXd> lean;  // [gain]
   // W^T P W of priors that stand for observations: what they add to the filling, whose unit is a residual's variance.
-  // Both empty where there is none: of 800 channels each would take 21 MB of zeros.
+  // Of the border's numbers, which are all that such priors are of; both empty where there is none.
   Eigen::MatrixXd prior_of_gains, prior_of_coordinates;
   double residual_variance = 0;  // mean square of the weighed residuals
   std::vector<bool> at_bound;    // [coordinate] held at a bound: the cost would go on falling beyond it
   // [coordinate] has a part in a direction that is flat: it has no error.
   std::vector<bool> undetermined;
   std::vector<std::string> degenerate;  // the flat directions, in words
-
-  Eigen::Index size() const { return whitening.cols(); }
 };
 
-Bread FactorBread(const Problem& problem, const Layout& layout, const std::vector<double>& u, ThreadPool* pool);
+// `most_full`: from more coordinates on not all pairs are kept (WhitenedForm).
+Bread FactorBread(const Problem& problem, const Layout& layout, const std::vector<double>& u, ThreadPool* pool,
+                  std::size_t most_full = kMostFull);
 
 }  // namespace lobefit

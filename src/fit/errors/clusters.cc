@@ -3,22 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SparseCore>
-
 #include "lobefit/fit/search/symmetric_eigen.h"
 
 namespace lobefit {
 namespace {
 
 // Of a positive matrix, from below, by powers of it.
-template <class Matrix>
-double LargestEigenvalue(const Matrix& matrix) {
+double LargestEigenvalue(const WhitenedMatrix& matrix, Eigen::Index size) {
   constexpr int kPowers = 20;
-  Eigen::VectorXd v = Eigen::VectorXd::Ones(matrix.rows());
+  Eigen::VectorXd v = Eigen::VectorXd::Ones(size);
   double value = 0;
   for (int k = 0; k < kPowers; ++k) {
     v.normalize();
-    v = (matrix * v).eval();
+    v = matrix.Times(v);
     value = v.norm();
   }
   return value;
@@ -27,16 +24,15 @@ double LargestEigenvalue(const Matrix& matrix) {
 // (1 - curvature)^(-1/2) times the vectors by the power series, where that takes fewer operations than eigenvectors.
 // The norm is that of many channels' many small parts, of which none is near 1; the powers tell, and the series itself,
 // whether they told right.
-template <class Matrix>
-bool BySeries(const Matrix& curvature, const Eigen::MatrixXd& vectors, Eigen::MatrixXd* result) {
-  const double norm = std::min(curvature.norm(), LargestEigenvalue(curvature));
+bool BySeries(const WhitenedMatrix& curvature, const Eigen::MatrixXd& vectors, Eigen::MatrixXd* result) {
+  const double norm = std::min(curvature.Norm(), LargestEigenvalue(curvature, vectors.rows()));
   const double terms = norm < 1 ? 36 / -std::log(norm) : INFINITY;
-  const auto rows = static_cast<double>(curvature.rows()), columns = static_cast<double>(vectors.cols());
+  const auto rows = static_cast<double>(vectors.rows()), columns = static_cast<double>(vectors.cols());
   if (!(terms * columns <= 5 * rows + 2 * columns)) return false;
   Eigen::MatrixXd term = vectors;
   *result = vectors;
   for (int k = 1; k < 2 * terms + 10; ++k) {
-    term = (curvature * term * ((k - 0.5) / k)).eval();
+    term = curvature.Times(term * ((k - 0.5) / k));
     *result += term;
     if (term.squaredNorm() <= 1e-32 * result->squaredNorm()) return true;
   }
@@ -45,29 +41,18 @@ bool BySeries(const Matrix& curvature, const Eigen::MatrixXd& vectors, Eigen::Ma
 
 }  // namespace
 
-Eigen::MatrixXd InverseRootTimes(const Eigen::MatrixXd& curvature, const Eigen::MatrixXd& vectors) {
+Eigen::MatrixXd InverseRootTimes(const WhitenedMatrix& curvature, const Eigen::MatrixXd& vectors) {
   Eigen::MatrixXd result;
-  const bool done = curvature.rows() < kLeastSparse
-                        ? BySeries(curvature, vectors, &result)
-                        : BySeries(Eigen::SparseMatrix<double>(curvature.sparseView()), vectors, &result);
-  if (done) return result;
-  const SymmetricEigen eigen = DecomposeSymmetric(curvature);
+  if (BySeries(curvature, vectors, &result)) return result;
+  const SymmetricEigen eigen = DecomposeSymmetric(curvature.Dense());
   const Eigen::VectorXd factor =
       (1 - eigen.values.array()).unaryExpr([](double x) { return x > kAlone ? 1 / std::sqrt(x) : 0.0; });
   return eigen.vectors * (factor.asDiagonal() * (eigen.vectors.transpose() * vectors));
 }
 
-Eigen::MatrixXd UnitColumns(const Eigen::MatrixXd& rows) {
-  Eigen::MatrixXd columns = rows.transpose();
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k).normalize();
-  return columns;
-}
-
-Cluster::Cluster(const FreedomTally& freedom) {
-  const Eigen::Index m = freedom.numbers().rows();
-  curvature.setZero(m, m);
-  score.setZero(m);
-  if (freedom.exact()) scatter.setZero(m, m);
+Cluster::Cluster(const FreedomTally& freedom) : curvature(freedom.form()) {
+  score.setZero(freedom.form().size);
+  if (freedom.exact()) scatter = WhitenedMatrix(freedom.form());
   squares.setZero(freedom.numbers().cols());
   fourths.setZero(freedom.numbers().cols());
 }
@@ -80,34 +65,23 @@ void Cluster::Add(const Cluster& other) {
   fourths += other.fourths;
 }
 
-ClusterTally::ClusterTally(const Eigen::MatrixXd& numbers, std::size_t clusters, double residual_variance)
-    : freedom_(numbers, clusters, residual_variance) {}
-
-void ClusterTally::MakeRoom(Eigen::MatrixXd* matrix) const {
-  if (matrix->size() == 0) matrix->setZero(freedom_.numbers().rows(), freedom_.numbers().rows());
-}
+ClusterTally::ClusterTally(const WhitenedForm& form, const SparseColumns& numbers, std::size_t clusters,
+                           double residual_variance)
+    : filling_(form), scatter_(form), freedom_(form, numbers, clusters, residual_variance) {}
 
 void ClusterTally::Add(const Cluster& cluster) {
-  MakeRoom(&filling_);
-  if (freedom_.exact()) MakeRoom(&scatter_);
-  filling_.selfadjointView<Eigen::Lower>().rankUpdate(InverseRootTimes(cluster.curvature, cluster.score));
-  if (freedom_.exact()) scatter_ += cluster.scatter;
+  filling_.AddSquare(InverseRootTimes(cluster.curvature, cluster.score));
+  scatter_ += cluster.scatter;
   freedom_.Add(cluster);
 }
 
-void ClusterTally::AddScatter(const ProductSums& of_samples) {
-  MakeRoom(&scatter_);
-  of_samples.AddTo([](Eigen::Index k) { return k; }, &scatter_);
+void ClusterTally::AddScatter(const Eigen::MatrixXd& moves, Eigen::Index count, ProductSums* sums) {
+  scatter_.AddScatter(moves, 0, count, count, sums);
 }
 
 void ClusterTally::Merge(const ClusterTally& other) {
-  const auto add = [this](const Eigen::MatrixXd& from, Eigen::MatrixXd* to) {
-    if (from.size() == 0) return;
-    MakeRoom(to);
-    *to += from;
-  };
-  add(other.filling_, &filling_);
-  add(other.scatter_, &scatter_);
+  filling_ += other.filling_;
+  scatter_ += other.scatter_;
   freedom_.Merge(other.freedom_);
 }
 

@@ -1,21 +1,24 @@
 #include "lobefit/fit/errors/entries.h"
 
+#include <cmath>
+
 namespace lobefit {
 
-Entries EntriesOf(const Layout& layout, const std::vector<double>& u, const Bread& bread) {
-  Entries entries;
-  Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
+ReportedEntries EntriesOf(const Layout& layout, const std::vector<double>& u, const Bread& bread) {
+  ReportedEntries entries;
+  SparseRows jacobian = layout.ReportJacobian(u.data());
   for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
-    bool undetermined = false;
-    for (std::size_t k = 0; k < layout.size(); ++k)
-      undetermined = undetermined || (bread.undetermined[k] && jacobian(row, static_cast<Eigen::Index>(k)) != 0);
+    bool undetermined = false, finite = true;
+    for (SparseRows::InnerIterator entry(jacobian, row); entry; ++entry) {
+      undetermined = undetermined || (bread.undetermined[static_cast<std::size_t>(entry.col())] && entry.value() != 0);
+      finite = finite && std::isfinite(entry.value());
+    }
     entries.undetermined.push_back(undetermined);
-    if (!undetermined && jacobian.row(row).allFinite()) continue;
+    if (!undetermined && finite) continue;
     entries.without_error.push_back(row);
-    jacobian.row(row).setZero();
+    for (SparseRows::InnerIterator entry(jacobian, row); entry; ++entry) entry.valueRef() = 0;
   }
-  const SparseRows by_coordinate = jacobian.sparseView(), whitening = bread.whitening.sparseView();
-  entries.rows = by_coordinate * whitening;
+  entries.rows = jacobian * bread.whitening;
   return entries;
 }
 

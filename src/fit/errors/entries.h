@@ -11,16 +11,12 @@
 
 namespace lobefit {
 
-// Rows of many channels depend on the shape and their own channel only: dense products took half of the time of a fit
-// with 800 of them, and dense rows a third of its memory.
-using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-
-struct Entries {
+struct ReportedEntries {
   SparseRows rows;                          // d reported entry / d whitened coordinate; zeros for one without an error
   std::vector<bool> undetermined;           // [entry] has a part in an undetermined direction
   std::vector<Eigen::Index> without_error;  // those, and entries that are not differentiable
 };
 
-Entries EntriesOf(const Layout& layout, const std::vector<double>& u, const Bread& bread);
+ReportedEntries EntriesOf(const Layout& layout, const std::vector<double>& u, const Bread& bread);
 
 }  // namespace lobefit

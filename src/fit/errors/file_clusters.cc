@@ -54,14 +54,13 @@ FileErrors EstimateErrorsByFile(const Problem& problem, const Layout& layout, co
   if (file_count < 2 || both_count == file_count) return errors;
 
   const Bread bread = FactorBread(problem, layout, u, pool);
-  const Entries entries = EntriesOf(layout, u, bread);
-  const Eigen::MatrixXd numbers = UnitColumns(Eigen::MatrixXd(entries.rows));
+  const ReportedEntries entries = EntriesOf(layout, u, bread);
+  const SparseColumns numbers = UnitColumns(entries.rows);
   const auto one_way = [&](const Incidences& groups) {
     const Filling filling = FillSandwich(problem, layout, u, bread, groups, numbers, pool);
     OneWay way = {Eigen::VectorXd(entries.rows.rows()), filling.clusters_freedom};
     for (Eigen::Index row = 0; row < entries.rows.rows(); ++row) {
-      const Eigen::SparseVector<double> entry = entries.rows.row(row).transpose();
-      way.variance(row) = entry.dot(filling.clusters * entry);
+      way.variance(row) = filling.clusters.Quadratic(entries.rows.row(row).transpose());
     }
     return way;
   };

@@ -17,30 +17,31 @@ Eigen::ArrayXd Excess(const Eigen::ArrayXd& fourths) { return fourths * (2.0 / 3
 
 }  // namespace
 
-FreedomTally::FreedomTally(const Eigen::MatrixXd& numbers, std::size_t clusters, double residual_variance)
-    : numbers_(&numbers),
+FreedomTally::FreedomTally(const WhitenedForm& form, const SparseColumns& numbers, std::size_t clusters,
+                           double residual_variance)
+    : form_(&form),
+      numbers_(&numbers),
       clusters_(clusters),
-      exact_(clusters <= kMostExact &&
+      exact_(form.full && clusters <= kMostExact &&
              static_cast<double>(clusters) * static_cast<double>(numbers.size()) <= kMostStored),
       per_unit_(residual_variance > 0 ? 1 / residual_variance : 1) {
   squares_ = fourths_ = h_ = e_ = e2_ = squares_2_ = Eigen::ArrayXd::Zero(numbers.cols());
-  if (!exact_ || numbers.rows() >= kLeastSparse) sparse_ = numbers.sparseView();
   if (numbers.rows() < kLeastSparse) dense_ = numbers;
 }
 
 Eigen::ArrayXXd FreedomTally::Squares(const Eigen::MatrixXd& a) const {
   if (numbers_->rows() < kLeastSparse) return per_unit_ * PieceTimes(a, dense_).array().square();
-  return per_unit_ * (a * sparse_).array().square();
+  return per_unit_ * (a * *numbers_).array().square();
 }
 
 void FreedomTally::Add(const Cluster& cluster) {
   squares_ += cluster.squares;
   fourths_ += cluster.fourths;
   if (exact_) {
-    const Eigen::MatrixXd root = InverseRootTimes(cluster.curvature, *numbers_);
+    const Eigen::MatrixXd root = InverseRootTimes(cluster.curvature, Eigen::MatrixXd(*numbers_));
     Influence influence;
-    influence.b = cluster.curvature * root;
-    influence.scattered = per_unit_ * (cluster.scatter.selfadjointView<Eigen::Lower>() * root);
+    influence.b = cluster.curvature.Times(root);
+    influence.scattered = per_unit_ * cluster.scatter.Times(root);
     influence.own = root.cwiseProduct(influence.scattered).colwise().sum().transpose().array();
     influence.squares = cluster.squares;
     influence.fourths = cluster.fourths;
@@ -48,18 +49,10 @@ void FreedomTally::Add(const Cluster& cluster) {
     influence_.push_back(std::move(influence));
     return;
   }
-  Eigen::ArrayXd h(sparse_.cols());
-  for (Eigen::Index k = 0; k < sparse_.cols(); ++k) {
-    double sum = 0;
-    for (Eigen::SparseMatrix<double>::InnerIterator i(sparse_, k); i; ++i) {
-      for (Eigen::SparseMatrix<double>::InnerIterator j(sparse_, k); j; ++j)
-        sum += i.value() * cluster.curvature(i.row(), j.row()) * j.value();
-    }
-    h(k) = sum;
-  }
+  Eigen::ArrayXd h(numbers_->cols());
+  for (Eigen::Index k = 0; k < h.size(); ++k) h(k) = cluster.curvature.Quadratic(numbers_->col(k));
   h_ += h;
-  const Eigen::ArrayXd length = numbers_->colwise().squaredNorm().transpose();
-  const Eigen::ArrayXd part = (h / length).min(1 - kAlone);
+  const Eigen::ArrayXd part = (h / Lengths()).min(1 - kAlone);
   const Eigen::ArrayXd e = part.square() / (1 - part);
   e_ += e;
   e2_ += e.square();
@@ -76,18 +69,23 @@ void FreedomTally::Merge(const FreedomTally& other) {
   influence_.insert(influence_.end(), other.influence_.begin(), other.influence_.end());
 }
 
+Eigen::ArrayXd FreedomTally::Lengths() const {
+  return Eigen::ArrayXd::NullaryExpr(numbers_->cols(),
+                                     [this](Eigen::Index k) { return numbers_->col(k).squaredNorm(); });
+}
+
 Eigen::VectorXd FreedomTally::OfSamples() const {
   return (fourths_ > 0).select(3 * squares_.square() / fourths_, kInfinity);
 }
 
-Eigen::ArrayXd FreedomTally::Exact(const Eigen::MatrixXd& scatter) const {
+Eigen::ArrayXd FreedomTally::Exact(const WhitenedMatrix& scatter) const {
   const auto dot = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) -> Eigen::ArrayXd {
     return a.cwiseProduct(b).colwise().sum().transpose().array();
   };
   Eigen::ArrayXd trace = Eigen::ArrayXd::Zero(numbers_->cols()), square = trace;
   for (std::size_t g = 0; g < influence_.size(); ++g) {
     const Influence& one = influence_[g];
-    const Eigen::MatrixXd all = per_unit_ * (scatter.selfadjointView<Eigen::Lower>() * one.b);
+    const Eigen::MatrixXd all = per_unit_ * scatter.Times(one.b);
     const Eigen::ArrayXd own = one.own - 2 * dot(one.b, one.scattered) + dot(one.b, all);
     trace += own;
     const Eigen::ArrayXd scale = (one.squares > 0).select(own / one.squares, 0);
@@ -100,13 +98,12 @@ Eigen::ArrayXd FreedomTally::Exact(const Eigen::MatrixXd& scatter) const {
   return trace.square() / square;
 }
 
-Eigen::VectorXd FreedomTally::OfClusters(const Eigen::MatrixXd& scatter) const {
+Eigen::VectorXd FreedomTally::OfClusters(const WhitenedMatrix& scatter) const {
   Eigen::ArrayXd freedom;
   if (exact_) {
     freedom = Exact(scatter);
   } else {
-    const Eigen::ArrayXd length = numbers_->colwise().squaredNorm().transpose();
-    const Eigen::ArrayXd shared = (e_.square() - e2_) * (length / h_).square();
+    const Eigen::ArrayXd shared = (e_.square() - e2_) * (Lengths() / h_).square();
     freedom = squares_.square() / (squares_2_ - Excess(fourths_) + shared * squares_.square());
   }
   // Residuals of zero, as without noise: errors are zero, whatever their quantile.

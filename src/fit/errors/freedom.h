@@ -8,10 +8,16 @@
 #include <Eigen/SparseCore>
 
 #include "lobefit/fit/errors/sample_rows.h"
+#include "lobefit/fit/errors/whitened_matrix.h"
 
 namespace lobefit {
 
 struct Cluster;
+
+// From so many coordinates on, numbers of many channels are mostly zeros.
+inline constexpr Eigen::Index kLeastSparse = 200;
+
+using SparseColumns = Eigen::SparseMatrix<double>;
 
 // The estimated variance of a number z^T a of the whitened coordinates (bread.h) is taken as a multiple of the
 // chi-square with its mean and variance [Satterthwaite 1946]: 2 mean^2 / variance degrees of freedom, with the noise of
@@ -30,37 +36,38 @@ struct Cluster;
 // thirds of its samples' w^2, by which the square of an estimated scatter is too large; more than G are never had.
 class FreedomTally {
  public:
-  // `numbers`: m x numbers, z each, of length 1 or 0; kept by reference. `clusters`: how many will be added.
-  // `residual_variance`: the unit of squares, so that their squares are numbers whatever that of the values.
-  FreedomTally(const Eigen::MatrixXd& numbers, std::size_t clusters, double residual_variance);
+  // `numbers`: m x numbers, z each, of length 1 or 0; kept by reference, as the form. `clusters`: how many will be
+  // added. `residual_variance`: the unit of squares, so that their squares are numbers whatever that of the values.
+  FreedomTally(const WhitenedForm& form, const SparseColumns& numbers, std::size_t clusters, double residual_variance);
 
   void Add(const Cluster& cluster);
   // Adds what another tally of the same fit has; the order is that of the clusters.
   void Merge(const FreedomTally& other);
 
-  const Eigen::MatrixXd& numbers() const { return *numbers_; }
-  // Whether degrees of freedom of clusters are exact, which takes each one's scatter.
+  const WhitenedForm& form() const { return *form_; }
+  const SparseColumns& numbers() const { return *numbers_; }
+  // Whether degrees of freedom of clusters are exact, which takes each one's scatter, and all of it.
   bool exact() const { return exact_; }
   // (z^T a)^2 of samples a (samples x m, at most kPiece), samples x numbers, in the unit.
   Eigen::ArrayXXd Squares(const Eigen::MatrixXd& a) const;
 
   // A number each; infinite where no sample has a part in it.
   Eigen::VectorXd OfSamples() const;
-  // A number each; NaN where no cluster has a part in it. `scatter`: that of all, lower half. Up to 100 clusters exactly;
+  // A number each; NaN where no cluster has a part in it. `scatter`: that of all. Up to 100 clusters exactly;
   // of more, where it decides nothing, with each cluster's curvature taken as a multiple of the unit matrix and with the
   // part of noise of one variance in what two clusters share.
-  Eigen::VectorXd OfClusters(const Eigen::MatrixXd& scatter) const;
+  Eigen::VectorXd OfClusters(const WhitenedMatrix& scatter) const;
 
  private:
-  Eigen::ArrayXd Exact(const Eigen::MatrixXd& scatter) const;
+  Eigen::ArrayXd Exact(const WhitenedMatrix& scatter) const;
+  Eigen::ArrayXd Lengths() const;
 
-  const Eigen::MatrixXd* numbers_;
+  const WhitenedForm* form_;
+  const SparseColumns* numbers_;
   std::size_t clusters_;
   bool exact_;
   double per_unit_;
-  // Of `numbers`: where many channels leave most of it zero, and else.
-  Eigen::SparseMatrix<double> sparse_;
-  RowMajorMatrix dense_;
+  RowMajorMatrix dense_;              // `numbers` where few channels leave little of it zero
   Eigen::ArrayXd squares_, fourths_;  // sums over samples of w and w^2
   // With h = z^T curvature z the cluster's share in the variance of a number under noise of one variance, sums of h, and
   // without `exact_` of e = h^2 / (1 - h) and e^2, with h as a part of z^T z.

@@ -32,26 +32,26 @@ const Eigen::MatrixXd& LeaveOneOut::Evaluate(const WhitenedPiece& piece) {
     if (!(size_(i) < kSmall)) y_.row(i).setZero();
   }
   AddSeries(piece);
-  for (Eigen::Index i = 0; i < piece.count() && bread_.border > 0; ++i) {
+  for (Eigen::Index i = 0; i < piece.count() && bread_.form.border > 0; ++i) {
     if (!(size_(i) < kSmall)) y_.row(i) = Direct(piece, i).transpose();
   }
-  moves_.resize(y_.rows(), bread_.size());
-  moves_.leftCols(bread_.border) = y_;
+  moves_.resize(y_.rows(), bread_.form.size);
+  moves_.leftCols(bread_.form.border) = y_;
   for (std::size_t c = 0; c < piece.rows.size(); ++c) {
     const Eigen::MatrixXd& rows = piece.rows[c];
     const auto channel = static_cast<Eigen::Index>(c);
-    DotRows(rows, y_, bread_.border, &sum_);
+    DotRows(rows, y_, bread_.form.border, &sum_);
     sum_ = w_.col(channel).array() * (residuals_.col(channel).array() + sum_);
-    for (Eigen::Index j = 0; j < bread_.own[c]; ++j)
-      arrays::Multiply(sum_.data(), rows.col(bread_.border + j).data(), static_cast<std::size_t>(rows.rows()),
-                       moves_.col(bread_.first[c] + j).data());
+    for (Eigen::Index j = 0; j < bread_.form.own[c]; ++j)
+      arrays::Multiply(sum_.data(), rows.col(bread_.form.border + j).data(), static_cast<std::size_t>(rows.rows()),
+                       moves_.col(bread_.form.first[c] + j).data());
   }
   return moves_;
 }
 
 // w, the right side in place of y, q where there is a loss, and how much of the curvature a sample has.
 void LeaveOneOut::Prepare(const WhitenedPiece& piece) {
-  const Eigen::Index padded = piece.rows[0].rows(), count = piece.count(), border = bread_.border;
+  const Eigen::Index padded = piece.rows[0].rows(), count = piece.count(), border = bread_.form.border;
   const auto channels = static_cast<Eigen::Index>(piece.rows.size());
   const bool bent = !piece.samples.curvature.isZero(0);
   residuals_.setZero(padded, channels);
@@ -79,7 +79,7 @@ void LeaveOneOut::Prepare(const WhitenedPiece& piece) {
 
 // y and what the powers of the curvature make of it.
 void LeaveOneOut::AddSeries(const WhitenedPiece& piece) {
-  const Eigen::Index padded = y_.rows(), border = bread_.border;
+  const Eigen::Index padded = y_.rows(), border = bread_.form.border;
   const auto channels = static_cast<Eigen::Index>(piece.rows.size());
   term_ = y_;
   Eigen::ArrayXd of_term, of_y;
@@ -107,7 +107,7 @@ void LeaveOneOut::AddSeries(const WhitenedPiece& piece) {
 
 // y of one sample by eigenvectors; directions that it alone determines are left out.
 Eigen::VectorXd LeaveOneOut::Direct(const WhitenedPiece& piece, Eigen::Index i) const {
-  const Eigen::Index border = bread_.border;
+  const Eigen::Index border = bread_.form.border;
   Eigen::MatrixXd left = Eigen::MatrixXd::Identity(border, border);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(border);
   if (q_.cols() > 0) left -= piece.samples.curvature(i) * q_.row(i).transpose() * q_.row(i);

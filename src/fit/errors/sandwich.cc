@@ -6,7 +6,7 @@
 
 #include "lobefit/fit/errors/clusters.h"
 #include "lobefit/fit/errors/leave_one_out.h"
-#include "lobefit/fit/errors/product_sums.h"
+#include "lobefit/fit/kernel/product_sums.h"
 #include "lobefit/fit/errors/sample_rows.h"
 #include "lobefit/fit/objective/gains.h"
 
@@ -25,10 +25,6 @@ std::vector<std::uint32_t> IncidenceOrder(const Incidences& incidences) {
   return order;
 }
 
-Eigen::MatrixXd Symmetric(const Eigen::MatrixXd& lower) {
-  return Eigen::MatrixXd(lower.selfadjointView<Eigen::Lower>());
-}
-
 // Sums of one run of samples in the order of incidences. Its first and last incidence may go on in the neighbouring
 // runs.
 struct Run {
@@ -43,7 +39,7 @@ struct Run {
 class Filler {
  public:
   Filler(const Problem& problem, const Layout& layout, const std::vector<double>& u, const Bread& bread,
-         const Incidences& incidences, const Eigen::MatrixXd& numbers)
+         const Incidences& incidences, const SparseColumns& numbers)
       : problem_(problem),
         kernel_(layout.ToKernel(u.data())),
         bread_(bread),
@@ -54,7 +50,7 @@ class Filler {
 
   Run Sum(std::size_t begin, std::size_t end) const {
     Run run;
-    run.tally.emplace(numbers_, incidences_.wi.size(), bread_.residual_variance);
+    run.tally.emplace(bread_.form, numbers_, incidences_.wi.size(), bread_.residual_variance);
     const bool exact = run.tally->freedom().exact();
     RowEvaluator evaluator(problem_.kernel_samples(), kernel_);
     LeaveOneOut leave_one_out(bread_);
@@ -71,10 +67,7 @@ class Filler {
       const Eigen::Index count = piece.count();
       const Eigen::MatrixXd& moves = leave_one_out.Evaluate(piece);
       const Eigen::ArrayXXd squares = run.tally->freedom().Squares(moves);
-      if (!exact) {
-        products.Sum(moves, 0, count, count);
-        run.tally->AddScatter(products);
-      }
+      if (!exact) run.tally->AddScatter(moves, count, &products);
       for (Eigen::Index i = 0; i < count;) {
         const std::uint32_t group = incidences_.group[order_[first + static_cast<std::size_t>(i)]];
         Eigen::Index j = i + 1;
@@ -84,10 +77,7 @@ class Filler {
           current.group = group;
         }
         AddSamples(piece, i, j, &products, &current.cluster);
-        if (exact) {
-          products.Sum(moves, i, j, count);
-          products.AddTo([](Eigen::Index k) { return k; }, &current.cluster.scatter);
-        }
+        if (exact) current.cluster.scatter.AddScatter(moves, i, j, count, &products);
         current.cluster.squares += squares.middleRows(i, j - i).colwise().sum().transpose();
         current.cluster.fourths += squares.middleRows(i, j - i).square().colwise().sum().transpose();
         i = j;
@@ -97,14 +87,13 @@ class Filler {
     return run;
   }
 
-  // An incidence with both halves of its curvature and the prior of its gain.
+  // An incidence with the prior of its gain.
   Cluster Whole(Run::Part part) const {
     Cluster cluster = std::move(part.cluster);
-    cluster.curvature.triangularView<Eigen::StrictlyUpper>() = cluster.curvature.transpose();
     if (bread_.lean.empty()) return cluster;
     const Gains& gains = *problem_.gains();
     const Eigen::VectorXd& lean = bread_.lean[part.group];
-    cluster.curvature += gains.precision() * lean * lean.transpose();
+    cluster.curvature.AddToBorder(lean, gains.precision());
     cluster.score -= gains.precision() * gains.logarithms()[part.group] * lean;
     return cluster;
   }
@@ -121,24 +110,24 @@ class Filler {
     }
   }
 
-  // Adds the score and the curvature (its lower half) of samples [begin, end) of a piece.
+  // Adds the score and the curvature of samples [begin, end) of a piece.
   void AddSamples(const WhitenedPiece& piece, Eigen::Index begin, Eigen::Index end, ProductSums* products,
                   Cluster* cluster) const {
-    const Eigen::Index border = bread_.border, count = end - begin;
+    const Eigen::Index border = bread_.form.border, count = end - begin;
     for (std::size_t c = 0; c < piece.rows.size(); ++c) {
-      const auto own = [&](Eigen::Index j) { return j < border ? j : bread_.first[c] + j - border; };
+      const auto own = [&](Eigen::Index j) { return j < border ? j : bread_.form.first[c] + j - border; };
       const auto r = piece.samples.residuals[c].segment(begin, count);
       for (Eigen::Index j = 0; j < piece.rows[c].cols(); ++j)
         cluster->score(own(j)) += piece.rows[c].col(j).segment(begin, count).dot(r);
       products->Sum(piece.rows[c], begin, end, piece.count());
-      products->AddTo(own, &cluster->curvature);
+      cluster->curvature.AddChannel(c, *products);
     }
     for (Eigen::Index i = begin; i < end; ++i) {
       if (piece.samples.curvature(i) == 0) continue;
       Eigen::VectorXd q = Eigen::VectorXd::Zero(border);
       for (std::size_t c = 0; c < piece.rows.size(); ++c)
         q += piece.samples.residuals[c](i) * piece.rows[c].row(i).transpose();
-      cluster->curvature.selfadjointView<Eigen::Lower>().rankUpdate(q, piece.samples.curvature(i));
+      cluster->curvature.AddToBorder(q, piece.samples.curvature(i));
     }
   }
 
@@ -156,32 +145,43 @@ class Filler {
   const KernelModel kernel_;
   const Bread& bread_;
   const Incidences& incidences_;
-  const Eigen::MatrixXd& numbers_;
+  const SparseColumns& numbers_;
   const std::vector<RowMajorMatrix> whiten_row_;
   const std::vector<std::uint32_t> order_;
 };
 
 // Adds the variance that a prior gives: known, not estimated from samples or clusters.
-void AddKnown(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& numbers, Eigen::MatrixXd* filling,
+void AddKnown(const Eigen::MatrixXd& prior, const SparseColumns& numbers, WhitenedMatrix* filling,
               Eigen::VectorXd* freedom) {
   if (prior.isZero(0)) return;
   for (Eigen::Index k = 0; k < numbers.cols(); ++k) {
-    const double known = numbers.col(k).dot(prior * numbers.col(k));
-    const double estimated = numbers.col(k).dot(*filling * numbers.col(k));
+    const Eigen::VectorXd of_border = Eigen::VectorXd(numbers.col(k)).head(prior.rows());
+    const double known = of_border.dot(prior * of_border);
+    const double estimated = filling->Quadratic(numbers.col(k));
     if (known > 0 && estimated > 0) (*freedom)(k) *= (1 + known / estimated) * (1 + known / estimated);
   }
-  *filling += prior;
+  filling->AddToBorder(prior);
 }
 
 }  // namespace
 
+SparseColumns UnitColumns(const SparseRows& rows) {
+  SparseColumns columns = rows.transpose();
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    const double length = columns.col(k).norm();
+    if (length > 0) columns.col(k) /= length;
+  }
+  return columns;
+}
+
 Filling FillSandwich(const Problem& problem, const Layout& layout, const std::vector<double>& u, const Bread& bread,
-                     const Incidences& incidences, const Eigen::MatrixXd& numbers, ThreadPool* pool) {
+                     const Incidences& incidences, const SparseColumns& numbers, ThreadPool* pool) {
   const Filler filler(problem, layout, u, bread, incidences, numbers);
   const std::size_t runs = RunCount(problem.size());
-  const auto m = static_cast<double>(bread.size());
-  const auto at_a_time = static_cast<std::size_t>(std::clamp(kMostBytes / (32 * m * m + 1), 2.0, 64.0));
-  ClusterTally tally(numbers, incidences.wi.size(), bread.residual_variance);
+  const auto m = static_cast<double>(bread.form.size);
+  const double pairs = m * static_cast<double>(bread.form.full ? bread.form.size : bread.form.border);
+  const auto at_a_time = static_cast<std::size_t>(std::clamp(kMostBytes / (32 * pairs + 1), 2.0, 64.0));
+  ClusterTally tally(bread.form, numbers, incidences.wi.size(), bread.residual_variance);
   std::optional<Run::Part> open;
   for (std::size_t first = 0; first < runs; first += at_a_time) {
     std::vector<Run> sums(std::min(runs - first, at_a_time));
@@ -201,7 +201,7 @@ Filling FillSandwich(const Problem& problem, const Layout& layout, const std::ve
     }
   }
   if (open) tally.Add(filler.Whole(std::move(*open)));
-  Filling filling = {Symmetric(tally.scatter()), tally.freedom().OfSamples(), Symmetric(tally.filling()),
+  Filling filling = {tally.scatter(), tally.freedom().OfSamples(), tally.filling(),
                      tally.freedom().OfClusters(tally.scatter())};
   AddKnown(bread.prior_of_gains + bread.prior_of_coordinates, numbers, &filling.samples, &filling.samples_freedom);
   AddKnown(bread.prior_of_coordinates, numbers, &filling.clusters, &filling.clusters_freedom);

@@ -13,12 +13,6 @@
 namespace lobefit {
 namespace {
 
-// rows middle rows^T.
-Eigen::MatrixXd Spread(const SparseRows& rows, const Eigen::MatrixXd& middle) {
-  const Eigen::MatrixXd half = rows * middle;
-  return rows * half.transpose();
-}
-
 // The scatter of K gains is known from them, with K - 1 degrees of freedom; a number whose variance comes from it to a
 // share has no more than the combination of both [Satterthwaite 1946]. Of f0 over 6 incidences under a drift of 2 %
 // intervals held 90 % without this.
@@ -29,40 +23,33 @@ double FreedomUnderDrift(double freedom, const Gains& gains, double share) {
 }  // namespace
 
 Uncertainty EstimateUncertainty(const Problem& problem, const Layout& layout, const std::vector<double>& u,
-                                const Incidences& incidences, ThreadPool* pool) {
+                                const Incidences& incidences, ThreadPool* pool, std::size_t most_full) {
   Uncertainty result;
-  const Bread bread = FactorBread(problem, layout, u, pool);
+  const Bread bread = FactorBread(problem, layout, u, pool, most_full);
   result.at_bound = bread.at_bound;
   result.degenerate = bread.degenerate;
   result.has_clusters = incidences.wi.size() >= 2;
 
-  const Entries reported = EntriesOf(layout, u, bread);
-  result.undetermined = reported.undetermined;
-  const SparseRows& entries = reported.rows;
-  const Filling filling =
-      FillSandwich(problem, layout, u, bread, incidences, UnitColumns(Eigen::MatrixXd(entries)), pool);
-  const auto spread = [&](const Eigen::MatrixXd& middle) {
-    Eigen::MatrixXd covariance = Spread(entries, middle);
-    for (const Eigen::Index row : reported.without_error) {
-      covariance.row(row).setConstant(kNan);
-      covariance.col(row).setConstant(kNan);
-    }
-    return covariance;
-  };
-  result.of_coordinates = Spread(bread.whitening.sparseView(), filling.samples);
-  result.covariance = spread(filling.samples);
-  if (result.has_clusters) {
-    result.clustered = spread(filling.clusters);
-  } else {
-    result.clustered.setZero(entries.rows(), entries.rows());
-  }
+  const ReportedEntries entries = EntriesOf(layout, u, bread);
+  result.undetermined = entries.undetermined;
+  const SparseColumns numbers = UnitColumns(entries.rows);
+  const Filling filling = FillSandwich(problem, layout, u, bread, incidences, numbers, pool);
+  result.covariance = EntryCovariance(entries, filling.samples, bread.form.full);
+  if (result.has_clusters) result.clustered = EntryCovariance(entries, filling.clusters, bread.form.full);
+  result.coordinate_variance.resize(bread.whitening.rows());
+  for (Eigen::Index k = 0; k < bread.whitening.rows(); ++k)
+    result.coordinate_variance(k) = filling.samples.Quadratic(bread.whitening.row(k).transpose());
+  result.gain_variance.resize(static_cast<Eigen::Index>(bread.lean.size()));
+  for (std::size_t k = 0; k < bread.lean.size(); ++k)
+    result.gain_variance(static_cast<Eigen::Index>(k)) = bread.lean[k].dot(filling.samples.Times(bread.lean[k]).col(0));
   const bool scatter_estimated = problem.gains() != nullptr && !layout.recipe().instrument.drift->sd;
-  for (Eigen::Index row = 0; row < entries.rows(); ++row) {
+  for (Eigen::Index row = 0; row < entries.rows.rows(); ++row) {
     result.freedom.push_back(result.has_clusters ? filling.clusters_freedom(row) : kNan);
     result.independent_freedom.push_back(filling.samples_freedom(row));
     if (!scatter_estimated) continue;
-    const Eigen::VectorXd entry = entries.row(row).transpose();
-    const double variance = entry.dot(filling.samples * entry);
+    // With gains all coordinates are the border's.
+    const Eigen::VectorXd entry = entries.rows.row(row).transpose();
+    const double variance = entry.dot(filling.samples.Times(entry).col(0));
     if (!(variance > 0)) continue;
     const double of_gains = entry.dot(bread.prior_of_gains * entry);
     for (double* freedom : {&result.freedom.back(), &result.independent_freedom.back()})

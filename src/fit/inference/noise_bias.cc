@@ -107,22 +107,13 @@ void AddShift(const Problem& problem, const Layout& layout, const KernelModel& m
   layout.Gather(sums, hessian, &gradient);
 }
 
-// The largest bias of a reported parameter.
-NoiseBias::Largest LargestOf(const Layout& layout, const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& moved,
-                             const Eigen::MatrixXd& known) {
+// The largest bias of a reported parameter. `moved`: by entry.
+NoiseBias::Largest LargestOf(const Layout& layout, const Eigen::VectorXd& moved, const Uncertainty& uncertainty) {
   NoiseBias::Largest largest;
   Eigen::Index row = 0;
   for (const Parameter& parameter : Parameters(layout.recipe().model)) {
     for (std::size_t c = 0; c < (parameter.per_channel ? layout.channels() : 1); ++c, ++row) {
-      std::vector<Eigen::Index> part;  // few of many: a channel's values, or a lobe's shape
-      for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
-        if (jacobian(row, k) != 0) part.push_back(k);
-      }
-      double variance = 0;
-      for (const Eigen::Index k : part) {
-        for (const Eigen::Index l : part) variance += jacobian(row, k) * known(k, l) * jacobian(row, l);
-      }
-      const double errors = std::fabs(jacobian.row(row).dot(moved)) / std::sqrt(variance);
+      const double errors = std::fabs(moved(row)) / std::sqrt(uncertainty.covariance.Variance(row));
       if (std::isfinite(errors) && errors > largest.errors) largest = {errors, parameter.json_name};
     }
   }
@@ -149,7 +140,7 @@ std::string BiasInWords(const NoiseBias::Largest& bias, const char* metric) {
 }  // namespace
 
 std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vector<double>& u,
-                                          const Eigen::MatrixXd& covariance, const Samples& all,
+                                          const Uncertainty& uncertainty, const Samples& all,
                                           const Incidences& incidences, ThreadPool* pool) {
   const auto [samples, groups] = SubsetForNoise(all, incidences);
   if (samples.size() == 0) return std::nullopt;
@@ -180,28 +171,19 @@ std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vecto
   constexpr double kUndetermined = 1e-10;
   hessian.AddToDiagonal(kUndetermined * hessian.Diagonal());
   // Coordinates at a bound have variance 0: they stay there.
-  const Eigen::VectorXd room = covariance.diagonal().unaryExpr([](double x) { return x > 0 ? 1e300 : 0.0; });
+  const Eigen::VectorXd room = uncertainty.coordinate_variance.unaryExpr([](double x) { return x > 0 ? 1e300 : 0.0; });
   for (Eigen::Index k = 0; k < 2; ++k) moved.col(k) = BoundedStep(hessian, -shift.col(k), -room, room);
-  const Eigen::MatrixXd jacobian = layout.ReportJacobian(u.data());
-  const Eigen::MatrixXd known = covariance.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
-  bias.of_floor = LargestOf(layout, jacobian, moved.col(0), known);
-  bias.of_all = LargestOf(layout, jacobian, moved.col(1), known);
+  const Eigen::MatrixXd of_entries = layout.ReportJacobian(u.data()) * moved;
+  bias.of_floor = LargestOf(layout, of_entries.col(0), uncertainty);
+  bias.of_all = LargestOf(layout, of_entries.col(1), uncertainty);
   bias.moved = moved.col(1);
   return bias;
 }
 
 void AddBias(const NoiseBias& bias, const Layout& layout, const std::vector<double>& u, Uncertainty* uncertainty) {
   const Eigen::VectorXd moved = layout.ReportJacobian(u.data()) * bias.moved;
-  const Eigen::Index entries = uncertainty->covariance.rows();
-  for (Eigen::MatrixXd* covariance : {&uncertainty->covariance, &uncertainty->clustered}) {
-    if (covariance == &uncertainty->clustered && !uncertainty->has_clusters) continue;
-    for (Eigen::Index i = 0; i < entries; ++i) {
-      for (Eigen::Index j = 0; j < entries; ++j) {
-        // What is fixed stays so.
-        if ((*covariance)(i, i) > 0 && (*covariance)(j, j) > 0) (*covariance)(i, j) += moved(i) * moved(j);
-      }
-    }
-  }
+  uncertainty->covariance.AddSquare(moved);
+  if (uncertainty->has_clusters) uncertainty->clustered.AddSquare(moved);
 }
 
 bool WantsAsinh(const NoiseBias& bias) {

@@ -33,10 +33,10 @@ struct NoiseBias {
 // rho^2 / 3 under the cube root: no reason for another curve, so that the floor's part is told apart, but more than a
 // standard error where samples are many. Good while v > 2 s: below, v is taken as 2 s. With a loss what moves them is
 // the mean of its score (noisy_loss.h), which is not 0 where the noise of a residual is skewed, whatever the metric;
-// outliers that are more often too high than too low are not in it. `covariance` is that of the solver's coordinates.
+// outliers that are more often too high than too low are not in it. `uncertainty` is that before any bias was added.
 // Nothing where the noise cannot be estimated.
 std::optional<NoiseBias> PredictNoiseBias(const Layout& layout, const std::vector<double>& u,
-                                          const Eigen::MatrixXd& covariance, const Samples& samples,
+                                          const Uncertainty& uncertainty, const Samples& samples,
                                           const Incidences& incidences, ThreadPool* pool);
 
 // The covariances of the reported entries with the squares of what the noise moves them by: mean square errors about

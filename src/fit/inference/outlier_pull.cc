@@ -35,7 +35,7 @@ std::optional<OutlierPull> PullOfOutliers(const Problem& problem, const Layout& 
   const KernelModel kernel = layout.ToKernel(u.data());
   if (kernel.loss == Loss::kNone) return std::nullopt;
   const Bread bread = FactorBread(problem, layout, u, pool);
-  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(bread.size(), 2);  // whitened; above the model, below it
+  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(bread.form.size, 2);  // whitened; above the model, below it
   OutlierPull result;
   const std::vector<std::uint32_t> order = FileOrder(problem.size());
   RowEvaluator evaluator(problem.kernel_samples(), kernel);
@@ -60,8 +60,8 @@ std::optional<OutlierPull> PullOfOutliers(const Problem& problem, const Layout& 
         const double residual = rows.residuals[c](i);
         const Eigen::VectorXd pull = (rows.rows[c].row(i) * bread.whiten_row[c]).transpose() * residual;
         auto side = pulls.col(residual < 0 ? 0 : 1);
-        side.head(bread.border) += pull.head(bread.border);
-        side.segment(bread.first[c], bread.own[c]) += pull.tail(bread.own[c]);
+        side.head(bread.form.border) += pull.head(bread.form.border);
+        side.segment(bread.form.first[c], bread.form.own[c]) += pull.tail(bread.form.own[c]);
       }
     }
   }
@@ -70,7 +70,7 @@ std::optional<OutlierPull> PullOfOutliers(const Problem& problem, const Layout& 
   Eigen::Index row = 0;
   for (const Parameter& parameter : Parameters(layout.recipe().model)) {
     for (std::size_t c = 0; c < (parameter.per_channel ? layout.channels() : 1); ++c, ++row) {
-      const double variance = uncertainty.covariance(row, row);
+      const double variance = uncertainty.covariance.Variance(row);
       if (!(variance > 0) || !moved.row(row).allFinite()) continue;
       OutlierPull pull = result;
       pull.above = moved(row, 0) / std::sqrt(variance);

@@ -130,37 +130,31 @@ void SelObjective::EvaluateLobes(const Prepared& at, std::size_t sample, bool de
   }
 }
 
-void SelObjective::FillRow(const Prepared& at, const LobeValues& values, Eigen::Index channel, double factor,
-                           Row* row) const {
-  row->channel = channel;
-  std::size_t entry = 0, own = static_cast<std::size_t>(kShape * lobes_);
-  for (Eigen::Index l = 0; l < lobes_; ++l, ++own) {
-    const double a = at.linear(l * channels_ + channel) * factor;
-    for (Eigen::Index j = 0; j < kShape; ++j, ++entry) {
-      row->index[entry] = kShape * l + j;
-      row->value[entry] = a * values.dk[static_cast<std::size_t>(l)][static_cast<std::size_t>(j)];
+void SelObjective::AddGram(const ProductSums& sums, Eigen::Index channel, Eigen::MatrixXd* hessian) const {
+  const auto coordinate = [&](Eigen::Index column) {
+    const Eigen::Index own = column - kShape * lobes_;
+    return own < 0 ? column : Amplitude(own, channel);
+  };
+  sums.ForEach([&](Eigen::Index j, Eigen::Index k, double sum) {
+    const Eigen::Index row = coordinate(j), column = coordinate(k);
+    (*hessian)(row, column) += sum;
+    if (row != column) (*hessian)(column, row) += sum;
+  });
+}
+
+void SelObjective::AddGram(const ProductSums& sums, Eigen::Index channel, ArrowMatrix* hessian) const {
+  const auto c = static_cast<std::size_t>(channel);
+  const Eigen::Index border = kShape * lobes_;
+  sums.ForEach([&](Eigen::Index j, Eigen::Index k, double sum) {  // j <= k
+    if (j < border && k >= border) {
+      hessian->across[c](j, k - border) += sum;
+      return;
     }
-    row->index[own] = Amplitude(l, channel);
-    row->value[own] = a * values.k[static_cast<std::size_t>(l)];
-  }
-  row->index[own] = Constant(channel);
-  row->value[own] = at.linear(lobes_ * channels_ + channel) * factor;
-}
-
-void SelObjective::AddSquare(const Row& row, double weight, Eigen::MatrixXd* hessian) const {
-  for (std::size_t p = 0; p < row.value.size(); ++p) {
-    for (std::size_t q = 0; q < row.value.size(); ++q)
-      (*hessian)(row.index[p], row.index[q]) += weight * row.value[p] * row.value[q];
-  }
-}
-
-void SelObjective::AddSquare(const Row& row, double weight, ArrowMatrix* hessian) const {
-  const Eigen::Map<const Eigen::VectorXd> all(row.value.data(), static_cast<Eigen::Index>(row.value.size()));
-  const auto shapes = all.head(kShape * lobes_), own = all.tail(lobes_ + 1);
-  const auto c = static_cast<std::size_t>(row.channel);
-  hessian->border += weight * shapes * shapes.transpose();
-  hessian->across[c] += weight * shapes * own.transpose();
-  hessian->own[c] += weight * own * own.transpose();
+    const Eigen::Index first = j < border ? 0 : border;
+    Eigen::MatrixXd* block = j < border ? &hessian->border : &hessian->own[c];
+    (*block)(j - first, k - first) += sum;
+    if (j != k) (*block)(k - first, j - first) += sum;
+  });
 }
 
 ArrowMatrix SelObjective::EmptyArrow() const {
@@ -188,8 +182,12 @@ double SelObjective::Sum(const Coordinates& u, Gram* hessian, Eigen::VectorXd* g
   const Prepared at(u, lobes_, channels_);
   const bool wanted = hessian != nullptr;
   if (wanted) gradient->setZero(size());
-  const auto columns = static_cast<std::size_t>(kShape * lobes_ + lobes_ + 1);
-  Row row = {std::vector<Eigen::Index>(columns), std::vector<double>(columns), 0};
+  // Rows of the Jacobian times the roots of the weights, of one channel: by the shapes of all lobes, then by its
+  // amplitudes and its constant.
+  const Eigen::Index shapes = kShape * lobes_, columns = shapes + lobes_ + 1;
+  Eigen::MatrixXd rows;
+  Eigen::VectorXd weighed;
+  ProductSums products;
   const LobeValues empty = {std::vector<double>(at.lobes.size()),
                             std::vector<std::array<double, kShape>>(at.lobes.size())};
   constexpr std::size_t kPiece = 64;
@@ -212,14 +210,28 @@ double SelObjective::Sum(const Coordinates& u, Gram* hessian, Eigen::VectorXd* g
       Residuals(options_.transform, f.data(), samples_.cos_i.data() + begin,
                 samples_.f_r[static_cast<std::size_t>(c)].data() + begin, nullptr, count, residual.data(),
                 slope.data());
+      for (std::size_t i = 0; i < count; ++i) sum += samples_.weight[begin + i] * residual[i] * residual[i];
+      if (!wanted) continue;
+      rows.setZero(static_cast<Eigen::Index>((count + 7) / 8 * 8), columns);
+      weighed.resize(static_cast<Eigen::Index>(count));
       for (std::size_t i = 0; i < count; ++i) {
-        const double w = samples_.weight[begin + i];
-        sum += w * residual[i] * residual[i];
-        if (!wanted) continue;
-        FillRow(at, values[i], c, slope[i] * to_f[i], &row);
-        for (std::size_t p = 0; p < columns; ++p) (*gradient)(row.index[p]) += w * row.value[p] * residual[i];
-        AddSquare(row, w, hessian);
+        const auto row = static_cast<Eigen::Index>(i);
+        const double root = std::sqrt(samples_.weight[begin + i]), factor = root * slope[i] * to_f[i];
+        weighed(row) = root * residual[i];
+        for (Eigen::Index l = 0; l < lobes_; ++l) {
+          const auto lobe = static_cast<std::size_t>(l);
+          const double a = at.linear(l * channels_ + c) * factor;
+          for (Eigen::Index j = 0; j < kShape; ++j)
+            rows(row, kShape * l + j) = a * values[i].dk[lobe][static_cast<std::size_t>(j)];
+          rows(row, shapes + l) = a * values[i].k[lobe];
+        }
+        rows(row, shapes + lobes_) = at.linear(lobes_ * channels_ + c) * factor;
       }
+      const Eigen::VectorXd slopes = rows.topRows(weighed.size()).transpose() * weighed;
+      gradient->head(shapes) += slopes.head(shapes);
+      for (Eigen::Index l = 0; l <= lobes_; ++l) (*gradient)(Amplitude(l, c)) += slopes(shapes + l);
+      products.Sum(rows, 0, weighed.size(), weighed.size());
+      AddGram(products, c, hessian);
     }
   }
   return sum;

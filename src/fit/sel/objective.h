@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include "lobefit/fit/coordinates/arrow.h"
+#include "lobefit/fit/kernel/product_sums.h"
 #include "lobefit/fit/sel/slice.h"
 
 namespace lobefit {
@@ -50,14 +51,6 @@ class SelObjective {
     std::vector<double> k;
     std::vector<std::array<double, kShape>> dk;
   };
-  // The entries of one residual's row of the Jacobian that are not zero: of the shapes of all lobes, then of the
-  // channel's amplitudes and its constant.
-  struct Row {
-    std::vector<Eigen::Index> index;
-    std::vector<double> value;
-    Eigen::Index channel = 0;
-  };
-
   Eigen::Index Amplitude(Eigen::Index lobe, Eigen::Index channel) const {
     return kShape * lobes_ + lobe * channels_ + channel;
   }
@@ -67,10 +60,10 @@ class SelObjective {
   ArrowMatrix EmptyArrow() const;
   template <class Gram>
   double Sum(const Coordinates& u, Gram* hessian, Eigen::VectorXd* gradient) const;
-  void AddSquare(const Row& row, double weight, Eigen::MatrixXd* hessian) const;
-  void AddSquare(const Row& row, double weight, ArrowMatrix* hessian) const;
+  // Adds the products of a channel's columns: of the shapes of all lobes, then of its amplitudes and its constant.
+  void AddGram(const ProductSums& sums, Eigen::Index channel, Eigen::MatrixXd* hessian) const;
+  void AddGram(const ProductSums& sums, Eigen::Index channel, ArrowMatrix* hessian) const;
   void EvaluateLobes(const Prepared& at, std::size_t sample, bool derivatives, LobeValues* values) const;
-  void FillRow(const Prepared& at, const LobeValues& values, Eigen::Index channel, double factor, Row* row) const;
   void AddPull(const SelPull& pull, Eigen::Index lobe, const Coordinates& u, double* sum, Eigen::MatrixXd* hessian,
                Eigen::VectorXd* gradient) const;
 

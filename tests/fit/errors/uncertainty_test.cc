@@ -303,6 +303,11 @@ INSTANTIATE_TEST_SUITE_P(
                      testing::Values(Loss::kNone, Loss::kHuber, Loss::kCauchy, Loss::kTukey)),
     NameOfCase);
 
+Matrix AsMatrix(const EntryCovariance& covariance) {
+  return Matrix::NullaryExpr(covariance.size(), covariance.size(),
+                             [&](Eigen::Index i, Eigen::Index k) { return covariance(i, k); });
+}
+
 // Every incidence cut at a run's end is put together again; any number of threads adds in the same order.
 TEST(Uncertainty, SameBitsOnOneAndEightThreads) {
   GoniometerLayout layout = StandardLayout();
@@ -319,8 +324,8 @@ TEST(Uncertainty, SameBitsOnOneAndEightThreads) {
     ThreadPool one(1), eight(8);
     const Uncertainty a = EstimateUncertainty(problem, coordinates, u, incidences, &one),
                       b = EstimateUncertainty(problem, coordinates, u, incidences, &eight);
-    EXPECT_TRUE(a.covariance == b.covariance);
-    EXPECT_TRUE(a.clustered == b.clustered);
+    EXPECT_TRUE(AsMatrix(a.covariance) == AsMatrix(b.covariance));
+    EXPECT_TRUE(AsMatrix(a.clustered) == AsMatrix(b.clustered));
     EXPECT_EQ(a.freedom, b.freedom);
   }
 }
@@ -344,8 +349,50 @@ TEST(Uncertainty, DoesNotDependOnTheOrderOfTheSamples) {
       shuffled.push_back(i * 7919 % measurement.samples.size());
     measurement.samples = measurement.samples.Subset(shuffled);
   }
-  EXPECT_LT((results[0].covariance - results[1].covariance).norm(), 1e-10 * results[0].covariance.norm());
-  EXPECT_LT((results[0].clustered - results[1].clustered).norm(), 1e-10 * results[0].clustered.norm());
+  const Matrix covariance = AsMatrix(results[0].covariance), clustered = AsMatrix(results[0].clustered);
+  EXPECT_LT((covariance - AsMatrix(results[1].covariance)).norm(), 1e-10 * covariance.norm());
+  EXPECT_LT((clustered - AsMatrix(results[1].clustered)).norm(), 1e-10 * clustered.norm());
+}
+
+// Of hundreds of channels what two of them share is not kept, and nothing else is another number.
+TEST(Uncertainty, WithoutPairsOfChannelsVariancesAreTheSame) {
+  GoniometerLayout layout = StandardLayout();
+  layout.polar_angles.clear();
+  layout.azimuths.clear();
+  for (int k = 0; k < 11; ++k) layout.polar_angles.push_back(DegreesToRadians(5.0 * k + 5));
+  for (int k = 0; k < 10; ++k) layout.azimuths.push_back(DegreesToRadians(36.0 * k));
+  layout.detector_step = DegreesToRadians(20);
+  SyntheticCase truth = OneLobe(Ndf::kEllipsoid, 0.3, 0.12, 4, -2, 20, {0.6, 0.4, 0.2}, {0.1, 0.2, 0.3});
+  const Measurement measurement = Synthetic(truth, layout, 0.1, 5);
+  const Incidences incidences = GroupByIncidence(measurement);
+  ASSERT_GT(incidences.wi.size(), 100U);  // degrees of freedom by one formula
+  Recipe recipe = DefaultRecipe({{Lobe{}}, Diffuse::kLambert}, "test");
+  const Layout coordinates(recipe, measurement.channels.names);
+  const Problem problem(measurement.samples, recipe);
+  ThreadPool pool(2);
+  const std::vector<double> u =
+      Solve(problem, coordinates, coordinates.FromShapes({{0.3, 0.12, 0.07, -0.03, -0.35}}), {}, &pool).u;
+  const Uncertainty full = EstimateUncertainty(problem, coordinates, u, incidences, &pool),
+                    arrow = EstimateUncertainty(problem, coordinates, u, incidences, &pool, 0);
+  ASSERT_TRUE(full.covariance.full());
+  ASSERT_FALSE(arrow.covariance.full());
+  constexpr Eigen::Index kShape = 5;
+  for (Eigen::Index i = 0; i < full.covariance.size(); ++i) {
+    const auto entry = static_cast<std::size_t>(i);
+    EXPECT_NEAR(arrow.covariance.Variance(i) / full.covariance.Variance(i), 1, 1e-10) << i;
+    EXPECT_NEAR(arrow.clustered.Variance(i) / full.clustered.Variance(i), 1, 1e-10) << i;
+    EXPECT_NEAR(arrow.freedom[entry] / full.freedom[entry], 1, 1e-10) << i;
+    EXPECT_NEAR(arrow.independent_freedom[entry] / full.independent_freedom[entry], 1, 1e-10) << i;
+    EXPECT_FALSE(std::isnan(full.covariance(i, 6)));
+    EXPECT_EQ(std::isnan(arrow.covariance(i, 6)), i != 6) << i;
+    for (Eigen::Index k = 0; k < kShape && i < kShape; ++k) {
+      const double unit = std::sqrt(full.clustered.Variance(i) * full.clustered.Variance(k));
+      EXPECT_NEAR(arrow.covariance(i, k), full.covariance(i, k), 1e-10 * unit) << i << " " << k;
+      EXPECT_NEAR(arrow.clustered(i, k), full.clustered(i, k), 1e-10 * unit) << i << " " << k;
+    }
+  }
+  for (Eigen::Index k = 0; k < full.coordinate_variance.size(); ++k)
+    EXPECT_NEAR(arrow.coordinate_variance(k) / full.coordinate_variance(k), 1, 1e-10) << k;
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST(NoiseBias, IsThatOfTheMeanOfManyFits) {
       const Incidences incidences = GroupByIncidence(measurement);
       const Uncertainty uncertainty = EstimateUncertainty(problem, layout, solution.u, incidences, &pool);
       const std::optional<NoiseBias> bias =
-          PredictNoiseBias(layout, solution.u, uncertainty.of_coordinates, measurement.samples, incidences, &pool);
+          PredictNoiseBias(layout, solution.u, uncertainty, measurement.samples, incidences, &pool);
       ASSERT_TRUE(bias.has_value());
       for (std::size_t k = 0; k < layout.size(); ++k) {
         const double error = solution.u[k] - exact[k];
@@ -83,8 +83,7 @@ TEST(NoiseBias, IsPartOfTheErrors) {
   u[static_cast<std::size_t>(layout.linear(0)[1].index)] = material.parameters[6].values[0];
   const Incidences incidences = GroupByIncidence(measurement);
   const Uncertainty plain = EstimateUncertainty(problem, layout, u, incidences, &pool);
-  const std::optional<NoiseBias> bias =
-      PredictNoiseBias(layout, u, plain.of_coordinates, measurement.samples, incidences, &pool);
+  const std::optional<NoiseBias> bias = PredictNoiseBias(layout, u, plain, measurement.samples, incidences, &pool);
   ASSERT_TRUE(bias.has_value());
   Uncertainty with = plain;
   AddBias(*bias, layout, u, &with);

@@ -130,7 +130,7 @@ TEST(NoiseBias, OfALossIsThatOfTheMeanOfManyFits) {
     const Uncertainty uncertainty = EstimateUncertainty(problem, layout, solution.u, incidences, &pool);
     if (trial == 1) plain_error = std::sqrt(uncertainty.covariance(6, 6));
     const std::optional<NoiseBias> bias =
-        PredictNoiseBias(layout, solution.u, uncertainty.of_coordinates, measurement.samples, incidences, &pool);
+        PredictNoiseBias(layout, solution.u, uncertainty, measurement.samples, incidences, &pool);
     ASSERT_TRUE(bias.has_value());
     for (std::size_t k = 0; k < layout.size(); ++k) {
       errors[k].push_back(solution.u[k] - exact[k]);

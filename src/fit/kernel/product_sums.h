@@ -9,7 +9,7 @@
 
 namespace lobefit {
 
-// The sums of one range of samples, to be added where a matrix has them.
+// The sums of one range of samples.
 class ProductSums {
  public:
   // rows^T rows of samples [begin, end) of the `count` of a piece (padded samples x columns).
@@ -27,12 +27,12 @@ class ProductSums {
     arrays::AddGram(from->data(), static_cast<std::size_t>(columns_), n, n, sums_.data());
   }
 
-  // Adds those of columns j and k to the entry (place(j), place(k)) of the lower half.
-  template <class Place>
-  void AddTo(const Place& place, Eigen::MatrixXd* to) const {
+  // add(j, k, sum of columns j and k), j <= k.
+  template <class Add>
+  void ForEach(const Add& add) const {
     std::size_t next = 0;
     for (Eigen::Index j = 0; j < columns_; ++j) {
-      for (Eigen::Index k = j; k < columns_; ++k) (*to)(place(k), place(j)) += sums_[next++];
+      for (Eigen::Index k = j; k < columns_; ++k) add(j, k, sums_[next++]);
     }
   }
 
