@@ -11,6 +11,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/process/progress.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/base/text/text.h"
 #include "lobefit/fit/coordinates/coordinates.h"
 #include "lobefit/fit/fit.h"
@@ -262,6 +263,18 @@ void RecommendByFolds(const std::vector<std::size_t>& eligible, double black, Co
       lobes;
 }
 
+// Before any fit, of which some take minutes.
+void CheckChannels(const std::vector<GivenMaterial>& given, const Channels& channels) {
+  for (const GivenMaterial& material : given) {
+    const std::vector<std::string>& own = material.material.channels;
+    if (own.size() == channels.size()) continue;
+    throw InputError(
+        fmt::format("{}: has {} channels ({}), the measurement {} ({}); choose channels of the measurement with "
+                    "--channels",
+                    material.name, own.size(), JoinSome(own), channels.size(), JoinSome(channels.names)));
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> DealFolds(std::size_t incidences, std::size_t folds, std::uint64_t seed) {
@@ -279,6 +292,7 @@ std::vector<std::size_t> DealFolds(std::size_t incidences, std::size_t folds, st
 
 Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMaterial>& given,
                    const CompareOptions& options, Measurement* measurement) {
+  CheckChannels(given, measurement->channels);
   Comparison comparison;
   comparison.metric = recipes.at(0).metric;
   comparison.weighting = EffectiveWeighting(recipes[0].weighting, measurement->samples);
@@ -306,13 +320,6 @@ Comparison Compare(const std::vector<Recipe>& recipes, const std::vector<GivenMa
       FitAll(recipes[m], options, comparison.metric, measurement, &used[m], &model);
     } else {
       const GivenMaterial& material = given[m - recipes.size()];
-      if (material.material.channels.size() != samples.values.size()) {
-        throw InputError(
-            fmt::format("{}: has {} channels ({}), the measurement {} ({}); choose channels of the "
-                        "measurement with --channels",
-                        material.name, material.material.channels.size(), Join(material.material.channels),
-                        samples.values.size(), Join(measurement->channels.names)));
-      }
       model.name = material.name;
       model.fitted = false;
       model.material = material.material;

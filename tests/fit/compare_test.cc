@@ -168,6 +168,10 @@ TEST(Compare, GivenMaterialIsJudgedAndNotRecommended) {
   EXPECT_EQ(comparison.recommended, 0U);
   material.channels = {"Y"};
   EXPECT_THROW(Compare({With({Ndf::kGgx}, "ggx")}, {{"grey", material}}, {}, &measurement), InputError);
+  // Before the fits: that of two samples is an error of its own.
+  measurement.samples = measurement.samples.Subset({0, 1});
+  EXPECT_THAT([&] { Compare({With({Ndf::kGgx}, "ggx")}, {{"grey", material}}, {}, &measurement); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("grey: has 1 channels")));
 }
 
 TEST(Compare, AllRecipesAreJudgedOnTheSameSamples) {

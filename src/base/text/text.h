@@ -28,9 +28,10 @@ std::optional<long long> ParseInteger(std::string_view field);
 // `name` and a suggestion from `allowed` that is at most two edits away: " (did you mean 'x'?)", else "".
 std::string DidYouMean(std::string_view name, const std::vector<std::string>& allowed);
 
-// "a, b, c".
 // Two digits a byte.
 std::string Hex(std::string_view bytes);
+
+// "a, b, c".
 std::string Join(const std::vector<std::string>& items, std::string_view separator = ", ");
 
 // A piece of the input that is fit to stand in a message: at most `max_length` bytes of UTF-8, control characters and

@@ -9,6 +9,7 @@
 
 #include "lobefit/base/error.h"
 #include "lobefit/base/process/parallel.h"
+#include "lobefit/base/text/printable.h"
 #include "lobefit/base/text/text.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/plot/style.h"
@@ -18,8 +19,8 @@ namespace {
 
 const Material& Checked(const Material& material, const Measurement& measurement) {
   if (material.channels != measurement.channels.names) {
-    throw InputError(measurement.source + ": the measurement has the channels " + Join(measurement.channels.names) +
-                     ", the material has " + Join(material.channels) +
+    throw InputError(measurement.source + ": the measurement has the channels " + JoinSome(measurement.channels.names) +
+                     ", the material has " + JoinSome(material.channels) +
                      "; give the measurement that the material was fitted to");
   }
   // One sample lies on any curve.
