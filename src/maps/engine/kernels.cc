@@ -47,16 +47,18 @@ struct Kernels {
   decltype(&plain::GeneralLobe) general_lobe;
   decltype(&plain::SumAmplitudes) sum_amplitudes;
   decltype(&plain::CostOf) cost_of;
+  decltype(&plain::WeightsOf) weights_of;
   decltype(&plain::RowsOf) rows_of;
   decltype(&plain::AddSquares) add_squares;
   decltype(&plain::AddGram) add_gram;
   decltype(&plain::MovesOf) moves_of;
 };
 
-#define LOBEFIT_KERNELS(set)                                                                                        \
-  Kernels {                                                                                                         \
-    set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe,        \
-        set::GeneralLobe, set::SumAmplitudes, set::CostOf, set::RowsOf, set::AddSquares, set::AddGram, set::MovesOf \
+#define LOBEFIT_KERNELS(set)                                                                                           \
+  Kernels {                                                                                                            \
+    set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe,           \
+        set::GeneralLobe, set::SumAmplitudes, set::CostOf, set::WeightsOf, set::RowsOf, set::AddSquares, set::AddGram, \
+        set::MovesOf                                                                                                   \
   }
 
 Kernels Choose() {
@@ -94,7 +96,8 @@ void GeneralLobe(const TwoWidths& widths, const MeanSlope& slope, const LightArr
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums) {
   kKernels.sum_amplitudes(terms, weight, sums);
 }
-double CostOf(const LightTerms& terms, double* weight) { return kKernels.cost_of(terms, weight); }
+double CostOf(const LightTerms& terms) { return kKernels.cost_of(terms); }
+void WeightsOf(const LightTerms& terms, double* weight) { kKernels.weights_of(terms, weight); }
 double RowsOf(const LightTerms& terms, Curvature curvature, const RowArrays& arrays, double* gradient) {
   return kKernels.rows_of(terms, curvature, arrays, gradient);
 }

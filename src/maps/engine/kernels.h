@@ -77,9 +77,10 @@ void GeneralLobe(const TwoWidths& widths, const MeanSlope& slope, const LightArr
 
 // By channels.
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums);
-// c^2 / 2 sum ln(1 + |r|^2 / c^2) with r of all channels of a light together, whose weight in the loss is stored unless
-// null.
-double CostOf(const LightTerms& terms, double* weight);
+// c^2 / 2 sum ln(1 + |r|^2 / c^2) with r of all channels of a light together.
+double CostOf(const LightTerms& terms);
+// The lights' weights in that loss, live / (1 + |r|^2 / c^2).
+void WeightsOf(const LightTerms& terms, double* weight);
 // The same, with what derivatives are made of; gradient by unknowns.
 double RowsOf(const LightTerms& terms, Curvature curvature, const RowArrays& arrays, double* gradient);
 // Adds sum w J^T J, below the diagonal.

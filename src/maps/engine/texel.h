@@ -98,7 +98,8 @@ class TexelFitter {
   TexelObjective objective_;
   MapBounds bounds_;
   LightVector mean_, dull_;
-  std::vector<double> sorted_, all_means_;
+  std::vector<double> all_means_, known_, largest_;
+  std::vector<std::size_t> used_;  // lights
   // Of the last Fit; no channels: nothing was fitted.
   MapModel last_model_;
   MapPoint last_point_;
