@@ -153,6 +153,9 @@ void AddSquares(const LightTerms& terms, const double* weight, MapMatrix* matrix
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved) {
   LOBEFIT_BY_SIZE(MovesOfTerms, terms, arrays, inverse, moved);
 }
+void PullsOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* pull) {
+  LOBEFIT_BY_SIZE(PullsOfTerms, terms, arrays, inverse, pull);
+}
 
 #undef LOBEFIT_BY_SIZE
 #undef LOBEFIT_INLINE

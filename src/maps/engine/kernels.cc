@@ -52,13 +52,15 @@ struct Kernels {
   decltype(&plain::AddSquares) add_squares;
   decltype(&plain::AddGram) add_gram;
   decltype(&plain::MovesOf) moves_of;
+  decltype(&plain::PullsOf) pulls_of;
+  decltype(&plain::SmoothSquares) smooth_squares;
 };
 
 #define LOBEFIT_KERNELS(set)                                                                                           \
   Kernels {                                                                                                            \
     set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe,           \
         set::GeneralLobe, set::SumAmplitudes, set::CostOf, set::WeightsOf, set::RowsOf, set::AddSquares, set::AddGram, \
-        set::MovesOf                                                                                                   \
+        set::MovesOf, set::PullsOf, set::SmoothSquares                                                                 \
   }
 
 Kernels Choose() {
@@ -109,6 +111,13 @@ void AddGram(const double* factor, const double* const* rows, int count, std::si
 }
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved) {
   kKernels.moves_of(terms, arrays, inverse, moved);
+}
+void PullsOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* pull) {
+  kKernels.pulls_of(terms, arrays, inverse, pull);
+}
+double SmoothSquares(const Vec3* centers, int count, const LightArrays& lights, const double* left,
+                     const double* right) {
+  return kKernels.smooth_squares(centers, count, lights, left, right);
 }
 
 }  // namespace lobefit

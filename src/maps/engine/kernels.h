@@ -92,5 +92,11 @@ void AddGram(const double* factor, const double* const* rows, int count, std::si
 inline constexpr double kJackknife = 0.85;
 // moved[j][l]: by how much unknown j moves with light l (errors.cc); `inverse` has zeros for held unknowns.
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved);
+// pull[j][l], j < 2: by how much unknown j moves where the values of light l are off by all of the prediction.
+void PullsOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* pull);
+// Sum over bumps on the sphere about at most 16 centres of (sum of bump left)^2 + (sum of bump right)^2 over the lights:
+// the quadratic form of a covariance between lights that falls with their angle and is 1 at the same light.
+double SmoothSquares(const Vec3* centers, int count, const LightArrays& lights, const double* left,
+                     const double* right);
 
 }  // namespace lobefit

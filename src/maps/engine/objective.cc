@@ -132,4 +132,10 @@ std::array<const double*, kMostUnknowns> TexelObjective::Moves(const MapModel& m
   return moved;
 }
 
+std::array<const double*, 2> TexelObjective::Pulls(const TexelData& data, const MapMatrix& inverse) {
+  terms_.padded = data.lights.padded;
+  PullsOf(terms_, rows_, inverse, rows_.rows.data());
+  return {row_[0].data(), row_[1].data()};
+}
+
 }  // namespace lobefit

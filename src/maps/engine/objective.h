@@ -51,6 +51,8 @@ class TexelObjective {
   // of this object.
   std::array<const double*, kMostUnknowns> Moves(const MapModel& model, const TexelData& data,
                                                  const MapMatrix& inverse);
+  // The first two rows of PullsOf, likewise, in place of Moves.
+  std::array<const double*, 2> Pulls(const TexelData& data, const MapMatrix& inverse);
 
  private:
   void Shape(const MapModel& model, const TexelData& data, const MapPoint& point, bool gradient);

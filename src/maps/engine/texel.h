@@ -52,6 +52,7 @@ struct ProfileTerms {
 struct TexelFit {
   Vec3 normal = {kNan, kNan, kNan}, normal_error = {kNan, kNan, kNan};
   double normal_angle_error = kNan;  // radians: root of the sum of both tangents' variances
+  double normal_doubt = kNan;        // radians: errors.h
   double diffuse[kMostChannels] = {kNan, kNan, kNan}, diffuse_error[kMostChannels] = {kNan, kNan, kNan};
   double f0[kMostChannels] = {kNan, kNan, kNan}, f0_error[kMostChannels] = {kNan, kNan, kNan};
   double alpha_x = kNan, alpha_y = kNan, angle = kNan;

@@ -78,12 +78,13 @@ void TexelFitter::ReportNormal(const MapPoint& point, const MapErrors& errors, T
   if (point.normal.z <= bounds_.least_normal_z * 1.0001) fit->status |= kMapAtBound;
   const MapFrame frame = FrameOf(point.normal);
   fit->normal_angle_error = std::sqrt(errors.covariance[0][0] + errors.covariance[1][1]);
+  fit->normal_doubt = errors.doubt;
   fit->normal_error = {Along(errors, frame.t.x, frame.b.x), Along(errors, frame.t.y, frame.b.y),
                        Along(errors, frame.t.z, frame.b.z)};
   if (!(fit->normal_angle_error < kMostNormalError)) {
     fit->status |= kMapNotDetermined;
     fit->normal = fit->normal_error = {kNan, kNan, kNan};
-    fit->normal_angle_error = kNan;
+    fit->normal_angle_error = fit->normal_doubt = kNan;
   }
 }
 

@@ -24,6 +24,7 @@ struct MapKind {
   MapLobe lobe = MapLobe::kNone;
   int channels = 0;
   bool clusters = false;  // texels are parted
+  bool doubt = true;      // files of older versions have none
 };
 
 // In the order of Fill. Parameters: normal.x .y .z, diffuse.C, f0.C, alpha (or alpha_x, alpha_y, angle_deg and, of an
