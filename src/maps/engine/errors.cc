@@ -11,37 +11,34 @@ namespace {
 // Chosen with the bumps by how the doubt sorts texels of synthetic stacks (`bench_maps doubts`), which changes little
 // from 0.2 to 0.5 and for bumps half and twice as wide.
 constexpr double kSmoothShare = 0.25;
-constexpr std::size_t kBumps = 16;
 
 // Evenly over the hemisphere, by the golden angle.
-std::array<Vec3, kBumps> BumpCenters() {
-  std::array<Vec3, kBumps> centers;
+BumpCenters Centers() {
+  BumpCenters centers;
   const double turn = kPi * (3 - std::sqrt(5.0));
-  for (std::size_t g = 0; g < kBumps; ++g) {
+  for (std::size_t g = 0; g < centers.size(); ++g) {
     const auto at = static_cast<double>(g);
-    const double z = 1 - (at + 0.5) / static_cast<double>(kBumps), flat = std::sqrt(1 - z * z);
+    const double z = 1 - (at + 0.5) / static_cast<double>(centers.size()), flat = std::sqrt(1 - z * z);
     centers[g] = {flat * std::cos(at * turn), flat * std::sin(at * turn), z};
   }
   return centers;
 }
-const std::array<Vec3, kBumps> kCenters = BumpCenters();
+const BumpCenters kCenters = Centers();
 
 }  // namespace
 
 double DoubtOf(const TexelData& data, const MapMatrix& inverse, int channels, TexelObjective* objective) {
   double squares = 0, predicted = 0;
   for (std::size_t l = 0; l < data.lights.count; ++l) {
+    double rr = 0, yy = 0;
     for (int c = 0; c < channels; ++c) {
-      const double w = objective->weight()[l], r = objective->residual(c)[l];
-      const double y = r + data.value[static_cast<std::size_t>(c)][l];
-      squares += w * r * r, predicted += w * y * y;
+      const double r = objective->residual(c)[l], y = r + data.value[static_cast<std::size_t>(c)][l];
+      rr += r * r, yy += y * y;
     }
+    squares += objective->weight()[l] * rr, predicted += objective->weight()[l] * yy;
   }
   const auto pull = objective->Pulls(data, inverse);
-  double apart = 0;
-  for (std::size_t l = 0; l < data.lights.count; ++l) apart += pull[0][l] * pull[0][l] + pull[1][l] * pull[1][l];
-  const double smooth = SmoothSquares(kCenters.data(), static_cast<int>(kBumps), data.lights, pull[0], pull[1]);
-  return std::sqrt(squares / predicted * (kSmoothShare * smooth + (1 - kSmoothShare) * apart));
+  return std::sqrt(squares / predicted * SmoothSquares(kCenters, kSmoothShare, data.lights, pull[0], pull[1]));
 }
 
 MapErrors ErrorsOf(const MapModel& model, const TexelData& data, const MapPoint& point, const MapBounds& bounds,

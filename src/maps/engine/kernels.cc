@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 // The same text for each instruction set; both compilers take the words of g++ or their own.
 #if defined(__clang__)
@@ -115,9 +116,9 @@ void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& 
 void PullsOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* pull) {
   kKernels.pulls_of(terms, arrays, inverse, pull);
 }
-double SmoothSquares(const Vec3* centers, int count, const LightArrays& lights, const double* left,
+double SmoothSquares(const BumpCenters& centers, double share, const LightArrays& lights, const double* left,
                      const double* right) {
-  return kKernels.smooth_squares(centers, count, lights, left, right);
+  return kKernels.smooth_squares(centers, share, lights, left, right);
 }
 
 }  // namespace lobefit

@@ -94,9 +94,10 @@ inline constexpr double kJackknife = 0.85;
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved);
 // pull[j][l], j < 2: by how much unknown j moves where the values of light l are off by all of the prediction.
 void PullsOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* pull);
-// Sum over bumps on the sphere about at most 16 centres of (sum of bump left)^2 + (sum of bump right)^2 over the lights:
-// the quadratic form of a covariance between lights that falls with their angle and is 1 at the same light.
-double SmoothSquares(const Vec3* centers, int count, const LightArrays& lights, const double* left,
+// The quadratic form, of left and of right together, of a covariance between lights that is 1 at the same light; `share`
+// of it falls smoothly with their angle, as bumps ((1 + cos) / 2)^8 about the centres overlap.
+using BumpCenters = std::array<Vec3, 16>;
+double SmoothSquares(const BumpCenters& centers, double share, const LightArrays& lights, const double* left,
                      const double* right);
 
 }  // namespace lobefit

@@ -211,28 +211,28 @@ LOBEFIT_INLINE void PullsOfTerms(const LightTerms terms, const RowArrays arrays,
   }
 }
 
-// Sums over bumps about `centers` of the squares of sum over lights of bump times left, and times right. A bump is
-// ((1 + cos) / 2)^8, all of a light together of length 1.
-double SmoothSquares(const Vec3* centers, int count, const LightArrays& lights, const double* left,
+double SmoothSquares(const BumpCenters& centers, double share, const LightArrays& lights, const double* left,
                      const double* right) {
-  constexpr int kMost = 16;
-  Lanes sums[2][kMost] = {};
+  constexpr std::size_t kBumps = std::tuple_size_v<BumpCenters>;
+  Lanes sums[2][kBumps] = {}, apart = {};
   for (std::size_t l = 0; l < lights.padded; l += kLanes) {
-    Lanes x, y, z, a, b, bumps[kMost], square = {}, length;
+    Lanes x, y, z, a, b, bumps[kBumps], square = {}, length;
     Load(&lights.x[l], &x), Load(&lights.y[l], &y), Load(&lights.z[l], &z), Load(left + l, &a), Load(right + l, &b);
-    for (int g = 0; g < count; ++g) {
-      const Vec3& v = centers[g];
-      const Lanes half = 0.5 + (0.5 * v.x * x + 0.5 * v.y * y + 0.5 * v.z * z), two = half * half, four = two * two;
+    for (std::size_t g = 0; g < kBumps; ++g) {
+      const Vec3 v = 0.5 * centers[g];
+      const Lanes half = 0.5 + (v.x * x + v.y * y + v.z * z), two = half * half, four = two * two;
       bumps[g] = four * four, square += bumps[g] * bumps[g];
     }
+    // All bumps of a light together are of length 1.
     Root(square, &length);
     const Lanes left_over = a / length, right_over = b / length;
-    for (int g = 0; g < count; ++g) sums[0][g] += bumps[g] * left_over, sums[1][g] += bumps[g] * right_over;
+    for (std::size_t g = 0; g < kBumps; ++g) sums[0][g] += bumps[g] * left_over, sums[1][g] += bumps[g] * right_over;
+    apart += a * a + b * b;
   }
-  double squares = 0;
-  for (int g = 0; g < count; ++g) {
+  double smooth = 0;
+  for (std::size_t g = 0; g < kBumps; ++g) {
     const double a = Total(sums[0][g]), b = Total(sums[1][g]);
-    squares += a * a + b * b;
+    smooth += a * a + b * b;
   }
-  return squares;
+  return share * smooth + (1 - share) * Total(apart);
 }

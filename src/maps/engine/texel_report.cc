@@ -120,12 +120,11 @@ void TexelFitter::Report(const MapModel& model, const MapDescent& best, TexelFit
   const MapErrors errors = ErrorsOf(model, data_, point, bounds_, rules_.loss, &objective_);
   double squares = 0, weights = 0;
   for (std::size_t l = 0; l < data_.lights.count; ++l) {
-    for (int c = 0; c < channels_; ++c) {
-      const double r = objective_.residual(c)[l];
-      squares += objective_.weight()[l] * r * r, weights += objective_.weight()[l];
-    }
+    double square = 0;
+    for (int c = 0; c < channels_; ++c) square += objective_.residual(c)[l] * objective_.residual(c)[l];
+    squares += objective_.weight()[l] * square, weights += objective_.weight()[l];
   }
-  fit->rms = std::sqrt(squares / weights);
+  fit->rms = std::sqrt(squares / (weights * channels_));
   if (!errors.regular) {
     fit->status |= kMapNotDetermined;
     return;
