@@ -14,8 +14,8 @@ constexpr double kExact = 1e-20;
 
 // Of the mean of ln(1 + |r|^2 / c^2) over the lights.
 constexpr double kRough = 0.25;
-// Below this part of it a valley is taken to hold all between an end and a point where the cost falls from there to
-// here, half way below the middle of both; above, 0.2 % of cat's texels more ended in a higher minimum.
+// Below this mean, a point lies in the valley of an end that is known where the cost half way to it lies below the mean
+// of both; at 0.25 twice as many of cat's texels ended in a higher minimum.
 constexpr double kSmooth = 0.2;
 // A decrease below this part of the cost is near the minimum, of one that is rough the second; a descent whose steps
 // promise less than `kTrusted` of the cost, and less than a third of what it is behind, will not catch up.

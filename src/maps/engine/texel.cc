@@ -30,7 +30,7 @@ TexelFitter::TexelFitter(const MapRules& rules, const LightPaths& paths, int cha
   Move(paths);
   data_.Resize(lights_.padded);
   objective_.Resize(lights_.padded);
-  mean_.resize(lights_.padded), dull_.resize(lights_.padded);
+  mean_.resize(lights_.padded), start_weight_.resize(lights_.padded);
 }
 
 bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit) {
@@ -152,7 +152,7 @@ TexelFit TexelFitter::Fit(const float* values, std::size_t stride, const HeldNum
   for (std::size_t c = 0; c < kMostChannels; ++c) known.diffuse[c] /= data_.scale, known.f0[c] /= data_.scale;
   const MapModel none = {MapLobe::kNone, channels_, rules_.schlick};
   const bool lobe_wanted = rules_.lobe != MapLobe::kNone;
-  MapDescent best = LambertStart(none, data_, mean_, bounds_, known, rules_.loss, &objective_, &dull_);
+  MapDescent best = LambertStart(none, data_, mean_, bounds_, known, rules_.loss, &objective_, &start_weight_);
   if (!lobe_wanted) best = Descend(none, data_, best.point, bounds_, rules_.loss, &objective_);
   MapModel model = none;
   if (lobe_wanted) {

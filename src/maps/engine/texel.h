@@ -98,7 +98,7 @@ class TexelFitter {
   TexelData data_;
   TexelObjective objective_;
   MapBounds bounds_;
-  LightVector mean_, dull_;
+  LightVector mean_, start_weight_;
   std::vector<double> all_means_, known_, largest_;
   std::vector<std::size_t> used_;  // lights
   // Of the last Fit; no channels: nothing was fitted.
