@@ -74,6 +74,7 @@ std::string MapsDocument(const Stack& stack, const MapsOptions& options, const M
                  {"unit", stack.calibrated ? "diffuse and f0 are albedo and reflectance"
                                            : "diffuse and f0 times one unknown factor of the stack"},
                  {"errors", "standard errors; NaN: not determined; ln_alpha: of the logarithm of alpha"},
+                 {"normal.doubt_deg", "to sort texels by: the normal's error if the misfit is smooth, no noise"},
                  {"status",
                   {{"outside", kMapOutside},
                    {"too_few_values", kMapTooFew},

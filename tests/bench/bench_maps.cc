@@ -1,6 +1,7 @@
 // One fit a texel, measured: normals of a benchmark object or of shaded hills against their truth, and texels a second
 // against FitMany and ceres::Solve with AutoDiff, as ratios of one run.
 //   bench_maps normals STACK TRUTH [--loss X] [--shadow X] [--share] [--threads N]   TRUTH: CSV column,row,n_x,n_y,n_z
+//   bench_maps doubts     how stated error and doubt sort the normals of hills that the model does not hold
 //   bench_maps hills      hills with cast shadows, for settings of loss and shadow
 //   bench_maps search STACK [STEP]   costs against those of descents from every start, of each STEP-th texel
 //   bench_maps speed [--quick]
@@ -82,7 +83,8 @@ int Normals(int argc, char** argv) {
   const double seconds = Seconds() - start;
   const std::vector<MapPlane> planes = PlanesFor(KindOf(recipe, stack));
   const std::size_t error_at = PlaneIndex(planes, MapPart::kErrors, "normal.angle_deg");
-  std::vector<std::pair<double, double>> texels;  // stated error, true error
+  const std::size_t doubt_at = PlaneIndex(planes, MapPart::kQuality, "normal.doubt_deg");
+  std::vector<std::pair<double, double>> texels, by_doubt;  // stated error or doubt, true error
   std::size_t undetermined = 0;
   for (const MapRows& band : bands) {
     for (std::size_t t = 0; t < band.rows * band.width; ++t) {
@@ -94,19 +96,25 @@ int Normals(int argc, char** argv) {
         continue;
       }
       texels.emplace_back(band.values[error_at][t], Angle(found, n));
+      by_doubt.emplace_back(band.values[doubt_at][t], Angle(found, n));
     }
   }
-  std::sort(texels.begin(), texels.end());
   std::printf("texels %zu, not determined %zu, %.1f s\n", texels.size(), undetermined, seconds);
   if (recipe.shares.Any()) std::printf("shared alpha %.4f\n", std::exp(shared.groups[0].held.point.width[0]));
-  for (const int percent : {100, 90, 75, 50}) {
-    const std::size_t count = texels.size() * static_cast<std::size_t>(percent) / 100;
-    std::vector<double> errors, stated;
-    for (std::size_t i = 0; i < count; ++i) errors.push_back(texels[i].second), stated.push_back(texels[i].first);
-    std::vector<double> sorted = errors;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count / 2), sorted.end());
-    std::printf("surest %3d %%: mean error %.3f deg, median %.3f; median stated %.3f\n", percent, Mean(errors),
-                sorted[count / 2], stated[count / 2]);
+  for (std::vector<std::pair<double, double>>* sorted_by : {&texels, &by_doubt}) {
+    std::sort(sorted_by->begin(), sorted_by->end());
+    std::printf("by %s\n", sorted_by == &texels ? "stated error" : "doubt");
+    for (const int percent : {100, 90, 75, 50}) {
+      const std::size_t count = sorted_by->size() * static_cast<std::size_t>(percent) / 100;
+      std::vector<double> errors, stated;
+      for (std::size_t i = 0; i < count; ++i) {
+        errors.push_back((*sorted_by)[i].second), stated.push_back((*sorted_by)[i].first);
+      }
+      std::vector<double> sorted = errors;
+      std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count / 2), sorted.end());
+      std::printf("surest %3d %%: mean error %.3f deg, median %.3f; median stated %.3f\n", percent, Mean(errors),
+                  sorted[count / 2], stated[count / 2]);
+    }
   }
   return 0;
 }
@@ -155,6 +163,76 @@ int Search(const char* path, std::size_t step) {
       "%zu texels: %.3f %% above by 1e-6, %.3f %% by 1 %%, %.3f %% with the other model; %.1f and %.1f us a texel\n",
       texels, percent(above), percent(far_above), percent(other_model), 1e6 * spent[0] / static_cast<double>(texels),
       1e6 * spent[1] / static_cast<double>(texels));
+  return 0;
+}
+
+// Mean error of the normals of the half of hills' texels that is surest, over that of all, by the stated error and by the
+// doubt, where values are made otherwise than the model has them.
+int Doubts() {
+  const std::size_t size = 64;
+  const std::vector<Vec3> lights = DomeLights(96, 60 * kPi / 180);
+  const std::size_t count = lights.size();
+  enum Kind { kNoise, kShadows, kTwoWidths, kBetween, kTwoLobes, kAll, kCalibration };
+  const char* names[] = {"noise alone",       "cast shadows", "two widths",    "light between slopes",
+                         "two lobes a texel", "all of these", "lights 3 % off"};
+  std::printf("%-22s %8s %8s %8s\n", "", "all, deg", "error", "doubt");
+  double means[2] = {};
+  for (const Kind kind : {kNoise, kShadows, kTwoWidths, kBetween, kTwoLobes, kAll, kCalibration}) {
+    const auto has = [&](Kind part) { return kind == part || (kind == kAll && part != kCalibration); };
+    const Hills hills = MakeHills(size, has(kTwoWidths) ? MapLobe::kGgxAnisotropic : MapLobe::kGgx,
+                                  has(kShadows) || has(kBetween) ? 1.6 : 1.2);
+    Maps wide = hills.maps;
+    for (const char* name : {"alpha", "alpha_x", "alpha_y"}) {
+      const std::size_t at = PlaneIndex(wide.planes, MapPart::kParameters, name);
+      if (at == wide.planes.size()) continue;
+      for (float& alpha : wide.rows.values[at]) alpha = std::min(1.0F, 2.5F * alpha);
+    }
+    std::vector<Vec3> true_lights = lights;
+    std::vector<double> gain(count, 1.0);
+    RandomNumbers off(99);
+    for (std::size_t l = 0; has(kCalibration) && l < count; ++l) {
+      gain[l] = 1 + 0.03 * off.Normal();
+      true_lights[l] = Normalized(lights[l] + 0.015 * Vec3{off.Normal(), off.Normal(), off.Normal()});
+    }
+    Relighting first(hills.maps, {true_lights, {}}, false, {}), second(wide, {true_lights, {}}, false, {});
+    TexelFitter fitter({}, {lights, {}}, 3);
+    std::vector<std::pair<double, double>> sorted[2];
+    std::vector<double> exact(3 * count), other(3 * count);
+    std::vector<float> values(3 * count);
+    for (std::size_t t = 0; t < size * size; t += 2) {
+      first.Texel(t, exact.data(), count), second.Texel(t, other.data(), count);
+      const auto plane = [&](std::size_t k) { return static_cast<double>(hills.maps.rows.values[k][t]); };
+      const Vec3 n = Normalized(Vec3{plane(0), plane(1), plane(2)});
+      // A slope that faces this one sends it a part of its light.
+      const Vec3 facing = {-n.x, -n.y, n.z};
+      RandomNumbers random(StreamSeed(1, t));
+      for (std::size_t i = 0; i < exact.size(); ++i) {
+        const std::size_t l = i % count;
+        const double diffuse = plane(3 + i / count);
+        double v = has(kTwoLobes) ? 0.5 * (exact[i] + other[i]) : exact[i];
+        if (has(kBetween)) {
+          v += 0.25 * (1 - Dot(n, facing)) * diffuse * diffuse * kInvPi * std::max(0.0, Dot(facing, true_lights[l]));
+        }
+        if (has(kShadows) && InCastShadow(hills, t, true_lights[l])) v *= 0.1;
+        values[i] = static_cast<float>(gain[l] * v * (1 + 0.02 * random.Normal()) + 0.001 * random.Normal());
+      }
+      const TexelFit fit = fitter.Fit(values.data(), count);
+      if (std::isnan(fit.normal.z)) continue;
+      sorted[0].emplace_back(fit.normal_angle_error, Angle(fit.normal, n));
+      sorted[1].emplace_back(fit.normal_doubt, Angle(fit.normal, n));
+    }
+    double all = 0, half[2] = {};
+    for (std::size_t by = 0; by < 2; ++by) {
+      std::sort(sorted[by].begin(), sorted[by].end());
+      std::vector<double> errors;
+      for (const auto& texel : sorted[by]) errors.push_back(texel.second);
+      all = Mean(errors);
+      errors.resize(errors.size() / 2);
+      half[by] = Mean(errors) / all, means[by] += half[by] / 7;
+    }
+    std::printf("%-22s %8.3f %8.3f %8.3f\n", names[kind], all, half[0], half[1]);
+  }
+  std::printf("%-22s %8s %8.3f %8.3f\n", "mean", "", means[0], means[1]);
   return 0;
 }
 
@@ -316,6 +394,7 @@ int main(int argc, char** argv) {
   if (what == "search" && argc >= 3) {
     return lobefit::Search(argv[2], argc > 3 ? static_cast<std::size_t>(std::max(1, std::atoi(argv[3]))) : 1);
   }
+  if (what == "doubts") return lobefit::Doubts();
   if (what == "hills") return lobefit::ShadedHills();
   if (what == "speed") return lobefit::Speed(argc > 2 && std::strcmp(argv[2], "--quick") == 0);
   std::fprintf(stderr, "bench_maps normals STACK TRUTH.csv | search STACK [STEP] | hills | speed [--quick]\n");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <tuple>
 
 #include "tests/maps/texels.h"
@@ -163,7 +164,8 @@ TEST_P(EachModel, MatrixAndErrorsAreThoseOfTheirDefinitions) {
   objective.Derivatives(model, data, point, loss, Curvature::kWhole, &gradient, &hessian);
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(model.Unknowns(), model.Unknowns());
   std::vector<Eigen::MatrixXd> parts;
-  std::vector<Eigen::VectorXd> slopes;
+  std::vector<Eigen::VectorXd> slopes, pulls;  // J^T W r without the loss's bend, J^T W y
+  double squares = 0, predicted = 0;
   for (std::size_t l = 0; l < directions.size(); ++l) {
     double square = 0;
     Eigen::MatrixXd part = Eigen::MatrixXd::Zero(model.Unknowns(), model.Unknowns());
@@ -177,6 +179,19 @@ TEST_P(EachModel, MatrixAndErrorsAreThoseOfTheirDefinitions) {
     part = w * part - 2 * w * w / (loss * loss) * row * row.transpose();
     whole += part;
     parts.push_back(part), slopes.push_back(w * row);
+    Eigen::VectorXd pull = Eigen::VectorXd::Zero(model.Unknowns());
+    double along = 0;
+    const auto prediction = [&](std::size_t c) {
+      return objective.residual(static_cast<int>(c))[l] + data.value[c][l];
+    };
+    for (std::size_t c = 0; c < J.size(); ++c) along += objective.residual(static_cast<int>(c))[l] * prediction(c);
+    for (std::size_t c = 0; c < J.size(); ++c) {
+      const double r = objective.residual(static_cast<int>(c))[l];
+      const Eigen::VectorXd column = Eigen::Map<const Eigen::VectorXd>(J[c][l].data(), model.Unknowns());
+      pull += (w * prediction(c) - 2 * w * w / (loss * loss) * r * along) * column;
+      squares += w * r * r, predicted += w * prediction(c) * prediction(c);
+    }
+    pulls.push_back(pull);
   }
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(model.Unknowns(), model.Unknowns());
   for (std::size_t l = 0; l < directions.size(); ++l) {
@@ -184,6 +199,25 @@ TEST_P(EachModel, MatrixAndErrorsAreThoseOfTheirDefinitions) {
     const Eigen::VectorXd moved = kJackknife * without + (1 - kJackknife) * whole.fullPivLu().solve(slopes[l]);
     covariance += moved * moved.transpose();
   }
+  // Of the misfit's variance a quarter is smooth: between lights as the bumps about 16 directions overlap.
+  const auto bumps = [&](std::size_t l) {
+    Eigen::VectorXd b(16);
+    for (int g = 0; g < 16; ++g) {
+      const double z = 1 - (g + 0.5) / 16, turn = g * kPi * (3 - std::sqrt(5.0));
+      const Vec3 center = FromSpherical(std::acos(z), turn);
+      b(g) = std::pow((1 + Dot(center, directions[l])) / 2, 8);
+    }
+    return Eigen::VectorXd(b.normalized());
+  };
+  double doubt = 0;
+  for (std::size_t l = 0; l < directions.size(); ++l) {
+    const Eigen::Vector2d left = whole.fullPivLu().solve(pulls[l]).head(2);
+    for (std::size_t m = 0; m < directions.size(); ++m) {
+      const Eigen::Vector2d right = whole.fullPivLu().solve(pulls[m]).head(2);
+      doubt += squares / predicted * (0.25 * bumps(l).dot(bumps(m)) + (l == m ? 0.75 : 0)) * left.dot(right);
+    }
+  }
+  EXPECT_NEAR(errors.doubt, std::sqrt(doubt), 1e-5 * errors.doubt);
   for (std::size_t j = 0; j < unknowns; ++j) {
     for (std::size_t k = 0; k < unknowns; ++k) {
       const auto at = [&](const Eigen::MatrixXd& m, std::size_t a, std::size_t b) {
@@ -194,6 +228,57 @@ TEST_P(EachModel, MatrixAndErrorsAreThoseOfTheirDefinitions) {
       EXPECT_NEAR(errors.covariance[j][k], at(covariance, j, k), 1e-4 * unit(covariance)) << j << " " << k;
     }
   }
+}
+
+// Residuals whose products of 1 + r^2 / c^2 are large numbers.
+TEST(TexelObjective, CostOfFarValuesIsThatOfTheirLogarithms) {
+  const std::vector<Vec3> directions = DomeLights(43, 60 * kDegree);
+  TexelData data;
+  data.Resize(directions.size());
+  TexelObjective objective;
+  objective.Resize(data.lights.padded);
+  const double loss = 0.05;
+  double expected = 0;
+  for (std::size_t l = 0; l < directions.size(); ++l) {
+    data.lights.Set(l, directions[l], {0, 0, 1}, false);
+    data.value[0][l] = l % 3 == 0 ? 1e-6 : l % 3 == 1 ? 0.1 : 3e6;
+    expected += 0.5 * loss * loss * std::log1p(data.value[0][l] * data.value[0][l] / (loss * loss));
+  }
+  EXPECT_NEAR(objective.Cost({MapLobe::kNone, 1, false}, data, {}, loss), expected, 1e-13 * expected);
+}
+
+// Light from a facing slope is a misfit that changes slowly with the light: errors from independent residuals see less
+// of it than the doubt.
+TEST(TexelFitter, DoubtSortsTexelsWhoseMisfitIsNoNoise) {
+  const Hills hills = MakeHills(32, MapLobe::kGgx, 1.6);
+  const std::vector<Vec3> lights = DomeLights(96, 60 * kDegree);
+  test::TexelValues values(hills.maps, lights, 0.02, 0.001);
+  TexelFitter fitter({}, {lights, {}}, 3);
+  std::vector<std::pair<double, double>> by_error, by_doubt;
+  for (std::size_t t = 0; t < 32 * 32; ++t) {
+    std::vector<float> v = values.Of(t, 1);
+    const Vec3 n = test::NormalAt(hills.maps, t), facing = {-n.x, -n.y, n.z};
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const double diffuse = static_cast<double>(hills.maps.rows.values[3 + i / lights.size()][t]);
+      const double lit = std::max(0.0, Dot(facing, lights[i % lights.size()]));
+      v[i] += static_cast<float>(0.25 * (1 - Dot(n, facing)) * diffuse * diffuse * kInvPi * lit);
+    }
+    const TexelFit fit = fitter.Fit(v.data(), lights.size());
+    if (std::isnan(fit.normal.z)) continue;
+    const double off = test::AngleBetween(fit.normal, n);
+    by_error.emplace_back(fit.normal_angle_error, off), by_doubt.emplace_back(fit.normal_doubt, off);
+  }
+  const auto mean = [](std::vector<std::pair<double, double>> texels, std::size_t count) {
+    std::sort(texels.begin(), texels.end());
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) sum += texels[i].second;
+    return sum / static_cast<double>(count);
+  };
+  const std::size_t all = by_doubt.size(), half = all / 2;
+  std::printf("  surest half over all: %.3f by error, %.3f by doubt\n", mean(by_error, half) / mean(by_error, all),
+              mean(by_doubt, half) / mean(by_doubt, all));
+  EXPECT_LT(mean(by_doubt, half), 0.7 * mean(by_doubt, all));
+  EXPECT_LT(mean(by_doubt, half), 0.9 * mean(by_error, half));
 }
 
 TEST_P(EachLobe, NoiseFreeTexelsAreRecovered) {

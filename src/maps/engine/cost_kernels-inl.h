@@ -34,7 +34,8 @@ LOBEFIT_INLINE void Residual(const LightTerms& terms, int channel, std::size_t l
   *r *= live;
 }
 
-template <bool kLobe, int kChannels>
+// The cost, or, where kWeigh, the loss's weights alone.
+template <bool kLobe, int kChannels, bool kWeigh>
 LOBEFIT_INLINE double CostOfTerms(const LightTerms terms, double* weight) {
   const double inverse = 1 / (terms.loss * terms.loss);
   LogSum logarithm;
@@ -48,13 +49,14 @@ LOBEFIT_INLINE double CostOfTerms(const LightTerms terms, double* weight) {
       square += r * r;
     }
     square *= inverse;
-    logarithm.Add(square);
-    if (weight != nullptr) Store(live / (1.0 + square), weight + l);
+    if (kWeigh) Store(live / (1.0 + square), weight + l);
+    if (!kWeigh) logarithm.Add(square);
   }
-  return 0.5 * terms.loss * terms.loss * logarithm.Value();
+  return kWeigh ? 0 : 0.5 * terms.loss * terms.loss * logarithm.Value();
 }
 
-template <int kShape, int kChannels>
+// Gradient and cost; with kRows also what the loss bends the second derivatives by.
+template <int kShape, int kChannels, bool kRows>
 LOBEFIT_INLINE double RowsOfTerms(const LightTerms terms, Curvature curvature, const RowArrays arrays,
                                   double* gradient) {
   constexpr bool kLobe = kShape > 2;
@@ -62,7 +64,6 @@ LOBEFIT_INLINE double RowsOfTerms(const LightTerms terms, Curvature curvature, c
   constexpr double kLeast = 0.05;  // of the weight that curvature along the residual keeps where it is clipped
   const double inverse = 1 / (terms.loss * terms.loss);
   const double most = curvature == Curvature::kClipped ? 1 - kLeast : 1e300;
-  const double bends = curvature == Curvature::kNone ? 0 : -2 * inverse;
   LogSum logarithm;
   Lanes sums[kShape + kPer * kChannels] = {};
   for (std::size_t l = 0; l < terms.padded; l += kLanes) {
@@ -73,18 +74,23 @@ LOBEFIT_INLINE double RowsOfTerms(const LightTerms terms, Curvature curvature, c
     for (int c = 0; c < kChannels; ++c) {
       const Amplitudes& a = terms.amplitudes[c];
       Residual<kLobe>(terms, c, l, A, S, k, live, &r[c]);
-      Store(r[c], arrays.residual[c] + l);
+      if (kRows) Store(r[c], arrays.residual[c] + l);
       square += r[c] * r[c];
       along_p += a.diffuse * r[c];
       if (kLobe) along_q += (a.f0 + (a.carried - a.f0) * k) * r[c];
     }
     const Lanes scaled = square * inverse;
     logarithm.Add(scaled);
-    // 1 / (1 + scaled) and 1 / |r|^2 from one division; bend is not below -most w / |r|^2.
-    const Lanes above = 1.0 + scaled, positive = square + 1e-300, one = 1.0 / (above * positive);
-    const Lanes w = live * (one * positive), whole = w * w * bends, least = -most * w * (one * above);
+    Lanes w;
+    if (kRows) {
+      // 1 / (1 + scaled) and 1 / |r|^2 from one division; bend is not below -most w / |r|^2.
+      const Lanes above = 1.0 + scaled, positive = square + 1e-300, one = 1.0 / (above * positive);
+      w = live * (one * positive);
+      Store(Larger(w * w * (-2 * inverse), -most * w * (one * above)), arrays.bend + l);
+    } else {
+      w = live / (1.0 + scaled);
+    }
     Store(w, arrays.weight + l);
-    Store(Larger(whole, least), arrays.bend + l);
     for (int j = 0; j < kShape; ++j) {
       Lanes row = {};
       if (j < 2) {
@@ -97,17 +103,17 @@ LOBEFIT_INLINE double RowsOfTerms(const LightTerms terms, Curvature curvature, c
         Load(terms.dspecular[j] + l, &q);
         row += along_q * q;
       }
-      Store(row, arrays.rows[j] + l);
+      if (kRows) Store(row, arrays.rows[j] + l);
       sums[j] += w * row;
     }
     const Lanes B = S - k * S;
     for (int c = 0; c < kChannels; ++c) {
       const Lanes diffuse = r[c] * A;
-      Store(diffuse, arrays.rows[kShape + kPer * c] + l);
+      if (kRows) Store(diffuse, arrays.rows[kShape + kPer * c] + l);
       sums[kShape + kPer * c] += w * diffuse;
       if (!kLobe) continue;
       const Lanes f0 = r[c] * B;
-      Store(f0, arrays.rows[kShape + 2 * c + 1] + l);
+      if (kRows) Store(f0, arrays.rows[kShape + 2 * c + 1] + l);
       sums[kShape + kPer * c + kPer - 1] += w * f0;
     }
   }

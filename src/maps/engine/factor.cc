@@ -5,8 +5,8 @@
 namespace lobefit {
 namespace {
 
-// M = L D L^T: row k holds column k of D L^T right of the diagonal, which holds 1 / d_k. Without roots, whose latencies
-// would add up.
+// M = L D L^T: row k holds column k of D L^T right of the diagonal, which holds 1 / d_k, and row k of L left of it.
+// Without roots, whose latencies would add up.
 template <int kSize>
 bool FactoriseOf(MapMatrix* matrix) {
   MapMatrix& m = *matrix;
@@ -18,6 +18,7 @@ bool FactoriseOf(MapMatrix* matrix) {
     for (int j = k + 1; j < kSize; ++j) {
       const double factor = m[k][j] * inverse;
       for (int i = j; i < kSize; ++i) m[j][i] -= factor * m[k][i];
+      m[j][k] = factor;
     }
     m[k][k] = inverse;
   }
@@ -31,10 +32,9 @@ void SolveOf(const MapMatrix& factor, MapVector* solution) {
     x[j] *= factor[j][j];
     for (int i = j + 1; i < kSize; ++i) x[i] -= factor[j][i] * x[j];
   }
-  for (int j = kSize - 2; j >= 0; --j) {
-    double sum = 0;
-    for (int i = j + 1; i < kSize; ++i) sum += factor[j][i] * x[i];
-    x[j] -= sum * factor[j][j];
+  // As soon as one is known all others take it, rather than each waiting for a sum.
+  for (int i = kSize - 1; i > 0; --i) {
+    for (int j = 0; j < i; ++j) x[j] -= factor[i][j] * x[i];
   }
 }
 
@@ -50,8 +50,7 @@ void InvertOf(const MapMatrix& factor, MapMatrix* inverse) {
   }
   for (int j = kSize - 2; j >= 0; --j) {
     for (int i = j + 1; i < kSize; ++i) {
-      const double share = factor[j][i] * factor[j][j];
-      for (int c = 0; c < kSize; ++c) x[j][c] -= share * x[i][c];
+      for (int c = 0; c < kSize; ++c) x[j][c] -= factor[i][j] * x[i][c];
     }
   }
 }

@@ -58,14 +58,19 @@ LOBEFIT_INLINE void WhereLit(const Lanes& c, Lanes* x) {
 LOBEFIT_INLINE void WhereNegative(const Lanes& c, const Lanes& a, const Lanes& b, Lanes* x) {
   for (std::size_t p = 0; p < Lanes::kParts; ++p) x->part[p] = c.part[p] < 0.0 ? a.part[p] : b.part[p];
 }
+// By halves, which is few instructions on all sets.
 LOBEFIT_INLINE double Total(const Lanes& s) {
-  return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+  using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+  Pair pair[kLanes / 2];
+  std::memcpy(pair, s.part, sizeof(Lanes));
+  const Pair sum = (pair[0] + pair[2]) + (pair[1] + pair[3]);
+  return sum[0] + sum[1];
 }
 
 // Sum of ln(1 + x) >= 0 with one logarithm for many terms: e -> e + x + e x is the product less 1, exact near 0.
 struct LogSum {
-  static constexpr std::size_t kFlush = 8;
-  static constexpr double kLarge = 1e100;
+  static constexpr std::size_t kFlush = 16;
+  static constexpr double kLarge = 1e35;  // the product of kLanes of them is a number
   Lanes product = {};
   std::size_t terms = 0;
   double rest = 0, sum = 0;
@@ -74,10 +79,21 @@ struct LogSum {
     product += x + product * x;
     if (++terms == kFlush) Flush();
   }
+  static LOBEFIT_INLINE double Joined(double a, double b) { return a + b + a * b; }
+  LOBEFIT_INLINE void Join(double x) {
+    if (rest > kLarge || x > kLarge) sum += std::log1p(rest), rest = 0;
+    rest = Joined(rest, x);
+  }
   LOBEFIT_INLINE void Flush() {
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      if (rest > kLarge || product[i] > kLarge) sum += std::log1p(rest), rest = 0;
-      rest += product[i] + rest * product[i];
+    double e[kLanes];
+    for (std::size_t i = 0; i < kLanes; ++i) e[i] = product[i];
+    // Most often all together, by pairs.
+    const double most = std::fmax(std::fmax(std::fmax(e[0], e[1]), std::fmax(e[2], e[3])),
+                                  std::fmax(std::fmax(e[4], e[5]), std::fmax(e[6], e[7])));
+    if (most < kLarge) {
+      Join(Joined(Joined(Joined(e[0], e[1]), Joined(e[2], e[3])), Joined(Joined(e[4], e[5]), Joined(e[6], e[7]))));
+    } else {
+      for (const double x : e) Join(x);
     }
     product = Lanes{}, terms = 0;
   }
@@ -100,11 +116,19 @@ void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums*
   SumAmplitudesOf<false, 1>(terms, weight, sums);
 }
 
-double CostOf(const LightTerms& terms, double* weight) {
+double CostOf(const LightTerms& terms) {
   const bool lobe = terms.shape > 2, color = terms.channels == 3;
-  if (lobe && color) return CostOfTerms<true, 3>(terms, weight);
-  if (lobe) return CostOfTerms<true, 1>(terms, weight);
-  return color ? CostOfTerms<false, 3>(terms, weight) : CostOfTerms<false, 1>(terms, weight);
+  if (lobe && color) return CostOfTerms<true, 3, false>(terms, nullptr);
+  if (lobe) return CostOfTerms<true, 1, false>(terms, nullptr);
+  return color ? CostOfTerms<false, 3, false>(terms, nullptr) : CostOfTerms<false, 1, false>(terms, nullptr);
+}
+
+void WeightsOf(const LightTerms& terms, double* weight) {
+  const bool lobe = terms.shape > 2, color = terms.channels == 3;
+  if (lobe && color) CostOfTerms<true, 3, true>(terms, weight);
+  if (lobe && !color) CostOfTerms<true, 1, true>(terms, weight);
+  if (!lobe && color) CostOfTerms<false, 3, true>(terms, weight);
+  if (!lobe && !color) CostOfTerms<false, 1, true>(terms, weight);
 }
 
 // Calls `function`<shape, channels> with those of the terms.
@@ -114,14 +138,23 @@ double CostOf(const LightTerms& terms, double* weight) {
   if (terms.shape == 3) return color ? function<3, 3>(__VA_ARGS__) : function<3, 1>(__VA_ARGS__); \
   return color ? function<5, 3>(__VA_ARGS__) : function<5, 1>(__VA_ARGS__)
 
+template <int kShape, int kChannels>
+LOBEFIT_INLINE double RowsOfSize(const LightTerms& terms, Curvature curvature, const RowArrays& arrays,
+                                 double* gradient) {
+  if (curvature == Curvature::kNone) return RowsOfTerms<kShape, kChannels, false>(terms, curvature, arrays, gradient);
+  return RowsOfTerms<kShape, kChannels, true>(terms, curvature, arrays, gradient);
+}
 double RowsOf(const LightTerms& terms, Curvature curvature, const RowArrays& arrays, double* gradient) {
-  LOBEFIT_BY_SIZE(RowsOfTerms, terms, curvature, arrays, gradient);
+  LOBEFIT_BY_SIZE(RowsOfSize, terms, curvature, arrays, gradient);
 }
 void AddSquares(const LightTerms& terms, const double* weight, MapMatrix* matrix) {
   LOBEFIT_BY_SIZE(AddSquaresOf, terms, weight, matrix);
 }
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved) {
   LOBEFIT_BY_SIZE(MovesOfTerms, terms, arrays, inverse, moved);
+}
+void PullsOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* pull) {
+  LOBEFIT_BY_SIZE(PullsOfTerms, terms, arrays, inverse, pull);
 }
 
 #undef LOBEFIT_BY_SIZE

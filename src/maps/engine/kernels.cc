@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 // The same text for each instruction set; both compilers take the words of g++ or their own.
 #if defined(__clang__)
@@ -47,16 +48,20 @@ struct Kernels {
   decltype(&plain::GeneralLobe) general_lobe;
   decltype(&plain::SumAmplitudes) sum_amplitudes;
   decltype(&plain::CostOf) cost_of;
+  decltype(&plain::WeightsOf) weights_of;
   decltype(&plain::RowsOf) rows_of;
   decltype(&plain::AddSquares) add_squares;
   decltype(&plain::AddGram) add_gram;
   decltype(&plain::MovesOf) moves_of;
+  decltype(&plain::PullsOf) pulls_of;
+  decltype(&plain::SmoothSquares) smooth_squares;
 };
 
-#define LOBEFIT_KERNELS(set)                                                                                        \
-  Kernels {                                                                                                         \
-    set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe,        \
-        set::GeneralLobe, set::SumAmplitudes, set::CostOf, set::RowsOf, set::AddSquares, set::AddGram, set::MovesOf \
+#define LOBEFIT_KERNELS(set)                                                                                           \
+  Kernels {                                                                                                            \
+    set::Cosines, set::CosineDerivatives, set::IsotropicValue, set::IsotropicGradient, set::AnisotropicLobe,           \
+        set::GeneralLobe, set::SumAmplitudes, set::CostOf, set::WeightsOf, set::RowsOf, set::AddSquares, set::AddGram, \
+        set::MovesOf, set::PullsOf, set::SmoothSquares                                                                 \
   }
 
 Kernels Choose() {
@@ -94,7 +99,8 @@ void GeneralLobe(const TwoWidths& widths, const MeanSlope& slope, const LightArr
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums) {
   kKernels.sum_amplitudes(terms, weight, sums);
 }
-double CostOf(const LightTerms& terms, double* weight) { return kKernels.cost_of(terms, weight); }
+double CostOf(const LightTerms& terms) { return kKernels.cost_of(terms); }
+void WeightsOf(const LightTerms& terms, double* weight) { kKernels.weights_of(terms, weight); }
 double RowsOf(const LightTerms& terms, Curvature curvature, const RowArrays& arrays, double* gradient) {
   return kKernels.rows_of(terms, curvature, arrays, gradient);
 }
@@ -106,6 +112,13 @@ void AddGram(const double* factor, const double* const* rows, int count, std::si
 }
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved) {
   kKernels.moves_of(terms, arrays, inverse, moved);
+}
+void PullsOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* pull) {
+  kKernels.pulls_of(terms, arrays, inverse, pull);
+}
+double SmoothSquares(const BumpCenters& centers, double share, const LightArrays& lights, const double* left,
+                     const double* right) {
+  return kKernels.smooth_squares(centers, share, lights, left, right);
 }
 
 }  // namespace lobefit

@@ -77,9 +77,10 @@ void GeneralLobe(const TwoWidths& widths, const MeanSlope& slope, const LightArr
 
 // By channels.
 void SumAmplitudes(const LightTerms& terms, const double* weight, AmplitudeSums* sums);
-// c^2 / 2 sum ln(1 + |r|^2 / c^2) with r of all channels of a light together, whose weight in the loss is stored unless
-// null.
-double CostOf(const LightTerms& terms, double* weight);
+// c^2 / 2 sum ln(1 + |r|^2 / c^2) with r of all channels of a light together.
+double CostOf(const LightTerms& terms);
+// The lights' weights in that loss, live / (1 + |r|^2 / c^2).
+void WeightsOf(const LightTerms& terms, double* weight);
 // The same, with what derivatives are made of; gradient by unknowns.
 double RowsOf(const LightTerms& terms, Curvature curvature, const RowArrays& arrays, double* gradient);
 // Adds sum w J^T J, below the diagonal.
@@ -91,5 +92,12 @@ void AddGram(const double* factor, const double* const* rows, int count, std::si
 inline constexpr double kJackknife = 0.85;
 // moved[j][l]: by how much unknown j moves with light l (errors.cc); `inverse` has zeros for held unknowns.
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved);
+// pull[j][l], j < 2: by how much unknown j moves where the values of light l are off by all of the prediction.
+void PullsOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* pull);
+// The quadratic form, of left and of right together, of a covariance between lights that is 1 at the same light; `share`
+// of it falls smoothly with their angle, as bumps ((1 + cos) / 2)^8 about the centres overlap.
+using BumpCenters = std::array<Vec3, 16>;
+double SmoothSquares(const BumpCenters& centers, double share, const LightArrays& lights, const double* left,
+                     const double* right);
 
 }  // namespace lobefit

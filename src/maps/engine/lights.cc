@@ -1,5 +1,6 @@
 #include "lobefit/maps/engine/lights.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lobefit {
@@ -25,10 +26,16 @@ void LightArrays::Set(std::size_t at, const Vec3& wi, const Vec3& wo, bool schli
   live[at] = 1;
 }
 
-void LightArrays::Copy(const LightArrays& from, std::size_t index, std::size_t at) {
-  x[at] = from.x[index], y[at] = from.y[index], z[at] = from.z[index];
-  out_x[at] = from.out_x[index], out_y[at] = from.out_y[index], out_z[at] = from.out_z[index];
-  square[at] = from.square[index], k[at] = from.k[index], live[at] = 1;
+void LightArrays::Take(const LightArrays& from, const std::vector<std::size_t>& index) {
+  from_z = from.from_z;
+  const auto take = [&](const LightVector& all, LightVector* some) {
+    for (std::size_t i = 0; i < index.size(); ++i) (*some)[i] = all[index[i]];
+  };
+  take(from.x, &x), take(from.y, &y), take(from.z, &z);
+  take(from.out_x, &out_x), take(from.out_y, &out_y), take(from.out_z, &out_z);
+  take(from.square, &square), take(from.k, &k);
+  std::fill(live.begin(), live.begin() + static_cast<std::ptrdiff_t>(index.size()), 1.0);
+  Close(index.size());
 }
 
 void LightArrays::Close(std::size_t lights) {

@@ -43,7 +43,8 @@ struct LightArrays {
   // As many as before.
   void Set(const LightPaths& paths, bool schlick);
   void Set(std::size_t at, const Vec3& wi, const Vec3& wo, bool schlick);
-  void Copy(const LightArrays& from, std::size_t index, std::size_t at);
+  // Makes these lights those of `from` at `index`, from 0. Domain: as many at most as these were made for.
+  void Take(const LightArrays& from, const std::vector<std::size_t>& index);
   // Makes the lights from `lights` on padding.
   void Close(std::size_t lights);
 };

@@ -173,3 +173,66 @@ LOBEFIT_INLINE void MovesOfTerms(const LightTerms terms, const RowArrays arrays,
     }
   }
 }
+
+// pull[j] = A^-1 J^T W y for the first two unknowns, y the prediction; A^-1 and W as above.
+template <int kShape, int kChannels>
+LOBEFIT_INLINE void PullsOfTerms(const LightTerms terms, const RowArrays arrays, const MapMatrix inverse,
+                                 double* const* pull) {
+  constexpr bool kLobe = kShape > 2;
+  constexpr int kPer = kLobe ? 2 : 1;
+  for (std::size_t l = 0; l < terms.padded; l += kLanes) {
+    Lanes A, S = {}, k = {}, w, bend, live, sums[2] = {}, along = {};
+    Load(terms.cosine + l, &A), Load(arrays.weight + l, &w), Load(arrays.bend + l, &bend), Load(terms.live + l, &live);
+    if (kLobe) Load(terms.specular + l, &S), Load(terms.k + l, &k);
+    const Lanes B = S - k * S;
+    Lanes r[kChannels], y[kChannels];
+    for (int c = 0; c < kChannels; ++c) {
+      const Amplitudes& a = terms.amplitudes[c];
+      Load(arrays.residual[c] + l, &r[c]);
+      y[c] = a.diffuse * A;
+      if (kLobe) y[c] += (a.f0 + (a.carried - a.f0) * k) * S;
+      along += r[c] * y[c];
+    }
+    for (int c = 0; c < kChannels; ++c) {
+      const Amplitudes& a = terms.amplitudes[c];
+      const Lanes x = live * (w * y[c] + bend * r[c] * along);
+      for (int i = 0; i < 2; ++i) {
+        Lanes column = inverse[i][kShape + kPer * c] * A;
+        if (kLobe) column += inverse[i][kShape + kPer * c + kPer - 1] * B;
+        for (int j = 0; j < kShape; ++j) {
+          Lanes p = {}, q = {};
+          if (j < 2) Load(terms.dcosine[j] + l, &p), column += inverse[i][j] * a.diffuse * p;
+          if (kLobe) Load(terms.dspecular[j] + l, &q), column += (inverse[i][j] * (a.f0 + (a.carried - a.f0) * k)) * q;
+        }
+        sums[i] += column * x;
+      }
+    }
+    for (int i = 0; i < 2; ++i) Store(sums[i], pull[i] + l);
+  }
+}
+
+double SmoothSquares(const BumpCenters& centers, double share, const LightArrays& lights, const double* left,
+                     const double* right) {
+  constexpr std::size_t kBumps = std::tuple_size_v<BumpCenters>;
+  Lanes sums[2][kBumps] = {}, apart = {};
+  for (std::size_t l = 0; l < lights.padded; l += kLanes) {
+    Lanes x, y, z, a, b, bumps[kBumps], square = {}, length;
+    Load(&lights.x[l], &x), Load(&lights.y[l], &y), Load(&lights.z[l], &z), Load(left + l, &a), Load(right + l, &b);
+    for (std::size_t g = 0; g < kBumps; ++g) {
+      const Vec3 v = 0.5 * centers[g];
+      const Lanes half = 0.5 + (v.x * x + v.y * y + v.z * z), two = half * half, four = two * two;
+      bumps[g] = four * four, square += bumps[g] * bumps[g];
+    }
+    // All bumps of a light together are of length 1.
+    Root(square, &length);
+    const Lanes left_over = a / length, right_over = b / length;
+    for (std::size_t g = 0; g < kBumps; ++g) sums[0][g] += bumps[g] * left_over, sums[1][g] += bumps[g] * right_over;
+    apart += a * a + b * b;
+  }
+  double smooth = 0;
+  for (std::size_t g = 0; g < kBumps; ++g) {
+    const double a = Total(sums[0][g]), b = Total(sums[1][g]);
+    smooth += a * a + b * b;
+  }
+  return share * smooth + (1 - share) * Total(apart);
+}

@@ -73,34 +73,38 @@ double TexelObjective::Cost(const MapModel& model, const TexelData& data, const 
   Shape(model, data, point, false);
   TakeAmplitudes(model, point);
   terms_.loss = loss;
-  return OrInfinite(CostOf(terms_, nullptr));
+  return OrInfinite(CostOf(terms_));
 }
 
-double TexelObjective::CostAtBestAmplitudes(const MapModel& model, const LightVector& weight,
-                                            const AmplitudeBounds& bounds, double* next_weight, MapPoint* point) {
+void TexelObjective::TakeBestAmplitudes(const MapModel& model, const LightVector& weight, const AmplitudeBounds& bounds,
+                                        MapPoint* point) {
   AmplitudeSums sums[kMostChannels] = {};
   SumAmplitudes(terms_, weight.data(), sums);
   for (std::size_t c = 0; c < static_cast<std::size_t>(model.channels); ++c) {
     BestAmplitudes(sums[c], bounds, &point->diffuse[c], &point->f0[c]);
   }
   TakeAmplitudes(model, *point);
-  return OrInfinite(CostOf(terms_, next_weight));
 }
 
 double TexelObjective::CostOfShape(const MapModel& model, const TexelData& data, const LightVector& weight, double loss,
                                    const AmplitudeBounds& bounds, MapPoint* point) {
   Shape(model, data, *point, false);
   terms_.loss = loss;
-  return CostAtBestAmplitudes(model, weight, bounds, nullptr, point);
+  TakeBestAmplitudes(model, weight, bounds, point);
+  return OrInfinite(CostOf(terms_));
 }
 
 double TexelObjective::CostOfStart(const MapModel& model, const TexelData& data, double loss,
                                    const AmplitudeBounds& bounds, MapPoint* point) {
   Shape(model, data, *point, false);
   terms_.loss = loss;
-  CostAtBestAmplitudes(model, data.lights.live, bounds, trial_weight_.data(), point);
-  return CostAtBestAmplitudes(model, trial_weight_, bounds, nullptr, point);
+  TakeBestAmplitudes(model, data.lights.live, bounds, point);
+  WeightsOf(terms_, trial_weight_.data());
+  TakeBestAmplitudes(model, trial_weight_, bounds, point);
+  return OrInfinite(CostOf(terms_));
 }
+
+void TexelObjective::WeightsOfLast(LightVector* weight) const { WeightsOf(terms_, weight->data()); }
 
 double TexelObjective::Derivatives(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,
                                    Curvature curvature, MapVector* gradient, MapMatrix* hessian) {
@@ -126,6 +130,12 @@ std::array<const double*, kMostUnknowns> TexelObjective::Moves(const MapModel& m
   std::array<const double*, kMostUnknowns> moved = {};
   for (int j = 0; j < model.Unknowns(); ++j) moved[j] = row_[static_cast<std::size_t>(j)].data();
   return moved;
+}
+
+std::array<const double*, 2> TexelObjective::Pulls(const TexelData& data, const MapMatrix& inverse) {
+  terms_.padded = data.lights.padded;
+  PullsOf(terms_, rows_, inverse, rows_.rows.data());
+  return {row_[0].data(), row_[1].data()};
 }
 
 }  // namespace lobefit

@@ -39,6 +39,8 @@ class TexelObjective {
   // shadow, weighs less.
   double CostOfStart(const MapModel& model, const TexelData& data, double loss, const AmplitudeBounds& bounds,
                      MapPoint* point);
+  // The loss's weights at the last call of these.
+  void WeightsOfLast(LightVector* weight) const;
   double Derivatives(const MapModel& model, const TexelData& data, const MapPoint& point, double loss,
                      Curvature curvature, MapVector* gradient, MapMatrix* hessian);
 
@@ -49,13 +51,15 @@ class TexelObjective {
   // of this object.
   std::array<const double*, kMostUnknowns> Moves(const MapModel& model, const TexelData& data,
                                                  const MapMatrix& inverse);
+  // The first two rows of PullsOf, likewise, in place of Moves.
+  std::array<const double*, 2> Pulls(const TexelData& data, const MapMatrix& inverse);
 
  private:
   void Shape(const MapModel& model, const TexelData& data, const MapPoint& point, bool gradient);
   void TakeAmplitudes(const MapModel& model, const MapPoint& point);
-  // For the shape of the last call of Shape; the loss' weights go to `next_weight` unless null.
-  double CostAtBestAmplitudes(const MapModel& model, const LightVector& weight, const AmplitudeBounds& bounds,
-                              double* next_weight, MapPoint* point);
+  // For the shape of the last call of Shape.
+  void TakeBestAmplitudes(const MapModel& model, const LightVector& weight, const AmplitudeBounds& bounds,
+                          MapPoint* point);
 
   ShapeArrays shape_;
   LightTerms terms_;

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lobefit {
 namespace {
+
+// More of them do not lower the costs that the descents from here reach.
+constexpr int kRounds = 2;
 
 Vec3 AboveHorizon(const Vec3& n, double least_z) {
   const double length = Norm(n);
@@ -27,20 +31,25 @@ Vec3 Solve3(const double A[6], const Vec3& b) {  // xx xy xz yy yz zz
 
 }  // namespace
 
-MapPoint LambertStart(const MapModel& model, const TexelData& data, const LightVector& mean, const MapBounds& bounds,
-                      const MapPoint& held, double loss, TexelObjective* objective, LightVector* dull) {
-  MapPoint point = held;
+MapDescent LambertStart(const MapModel& model, const TexelData& data, const LightVector& mean, const MapBounds& bounds,
+                        const MapPoint& held, double loss, TexelObjective* objective, LightVector* weight) {
+  MapDescent start = {held, std::numeric_limits<double>::infinity(), false, 0};
   const LightArrays& lights = data.lights;
-  for (std::size_t l = 0; l < lights.padded; ++l) (*dull)[l] = mean[l] <= 1 ? lights.live[l] : 0;
-  if (!bounds.normal_held) {
-    const double* rows[4] = {lights.x.data(), lights.y.data(), lights.z.data(), mean.data()};
-    MapMatrix sums = {};
-    AddGram(dull->data(), rows, 4, lights.padded, &sums);
-    const double A[6] = {sums[0][0], sums[1][0], sums[2][0], sums[1][1], sums[2][1], sums[2][2]};
-    point.normal = AboveHorizon(Solve3(A, {sums[3][0], sums[3][1], sums[3][2]}), 0.1);
+  for (std::size_t l = 0; l < lights.padded; ++l) (*weight)[l] = mean[l] <= 1 ? lights.live[l] : 0;
+  MapPoint point = held;
+  for (int round = 0; round < kRounds; ++round) {
+    if (!bounds.normal_held) {
+      const double* rows[4] = {lights.x.data(), lights.y.data(), lights.z.data(), mean.data()};
+      MapMatrix sums = {};
+      AddGram(weight->data(), rows, 4, lights.padded, &sums);
+      const double A[6] = {sums[0][0], sums[1][0], sums[2][0], sums[1][1], sums[2][1], sums[2][2]};
+      point.normal = AboveHorizon(Solve3(A, {sums[3][0], sums[3][1], sums[3][2]}), 0.1);
+    }
+    const double cost = objective->CostOfShape(model, data, *weight, loss, bounds.amplitudes, &point);
+    if (cost < start.cost) start.point = point, start.cost = cost;
+    objective->WeightsOfLast(weight);
   }
-  objective->CostOfShape(model, data, *dull, loss, bounds.amplitudes, &point);
-  return point;
+  return start;
 }
 
 Vec3 HighlightNormal(const TexelData& data, const LightVector& mean, const MapPoint& lambert, const MapBounds& bounds) {

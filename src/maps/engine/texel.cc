@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace lobefit {
@@ -10,6 +11,9 @@ namespace {
 constexpr double kStartAlphas[] = {0.05, 0.1, 0.2, 0.4, 0.8};
 // Cosine of the angle between normals that lead to the same valley.
 constexpr double kSamePeak = 0.9998;
+
+// Of the cost where a coarse descent ends: what a fine one may still take from it, with room.
+constexpr double kMayFall = 0.7;
 
 // Mean slopes, in the frame of the normal, of a lobe about `peak`.
 std::array<double, 2> SlopeTowards(const Vec3& normal, const Vec3& peak, double most) {
@@ -26,43 +30,46 @@ TexelFitter::TexelFitter(const MapRules& rules, const LightPaths& paths, int cha
   Move(paths);
   data_.Resize(lights_.padded);
   objective_.Resize(lights_.padded);
-  mean_.resize(lights_.padded), dull_.resize(lights_.padded);
+  mean_.resize(lights_.padded), start_weight_.resize(lights_.padded);
 }
 
 bool TexelFitter::Select(const float* values, std::size_t stride, TexelFit* fit) {
-  all_means_.assign(lights_.count, kNan);
-  sorted_.clear();
-  for (std::size_t l = 0; l < lights_.count; ++l) {
-    double sum = 0;
-    for (int c = 0; c < channels_; ++c) sum += static_cast<double>(values[static_cast<std::size_t>(c) * stride + l]);
-    all_means_[l] = sum / channels_;
-    if (!std::isnan(sum)) sorted_.push_back(all_means_[l]);
+  all_means_.assign(lights_.count, 0);
+  for (int c = 0; c < channels_; ++c) {
+    const float* from = values + static_cast<std::size_t>(c) * stride;
+    for (std::size_t l = 0; l < lights_.count; ++l) all_means_[l] += static_cast<double>(from[l]);
   }
-  if (sorted_.empty()) return false;
-  const std::size_t at = (sorted_.size() - 1) * 9 / 10;
-  std::nth_element(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(at), sorted_.end());
-  double scale = sorted_[at];
+  known_.clear();
+  const double per_channel = 1.0 / channels_;
+  for (double& mean : all_means_) {
+    mean *= per_channel;
+    if (!std::isnan(mean)) known_.push_back(mean);
+  }
+  if (known_.empty()) return false;
+  // A heap of the largest tenth: most values never enter it.
+  largest_.resize(known_.size() - (known_.size() - 1) * 9 / 10);
+  std::partial_sort_copy(known_.begin(), known_.end(), largest_.begin(), largest_.end(), std::greater<>());
+  double scale = largest_.back();
   // More than a tenth of the values is saturated: the brightest that is not.
   if (std::isinf(scale)) {
     scale = 0;
-    for (const double mean : sorted_) scale = std::isfinite(mean) ? std::max(scale, mean) : scale;
+    for (const double mean : known_) scale = std::isfinite(mean) ? std::max(scale, mean) : scale;
   }
   if (!(scale > 0)) return false;
   fit->scale = scale;
   data_.scale = scale;
-  std::size_t used = 0;
-  data_.lights.from_z = lights_.from_z;
+  used_.clear();
   for (std::size_t l = 0; l < lights_.count; ++l) {
-    if (!std::isfinite(all_means_[l]) || all_means_[l] < rules_.shadow * scale) continue;
-    data_.lights.Copy(lights_, l, used);
-    for (int c = 0; c < channels_; ++c) {
-      data_.value[c][used] = static_cast<double>(values[static_cast<std::size_t>(c) * stride + l]) / scale;
-    }
-    mean_[used++] = all_means_[l] / scale;
+    if (std::isfinite(all_means_[l]) && all_means_[l] >= rules_.shadow * scale) used_.push_back(l);
   }
-  data_.lights.Close(used);
+  const std::size_t used = used_.size();
+  const double per_scale = 1 / scale;
+  data_.lights.Take(lights_, used_);
+  for (std::size_t i = 0; i < used; ++i) mean_[i] = all_means_[used_[i]] * per_scale;
   std::fill(mean_.begin() + static_cast<std::ptrdiff_t>(used), mean_.end(), 0.0);
   for (int c = 0; c < channels_; ++c) {
+    const float* from = values + static_cast<std::size_t>(c) * stride;
+    for (std::size_t i = 0; i < used; ++i) data_.value[c][i] = static_cast<double>(from[used_[i]]) * per_scale;
     std::fill(data_.value[c].begin() + static_cast<std::ptrdiff_t>(used), data_.value[c].end(), 0.0);
   }
   fit->used = static_cast<std::uint32_t>(used);
@@ -144,11 +151,9 @@ TexelFit TexelFitter::Fit(const float* values, std::size_t stride, const HeldNum
   MapPoint known = held.point;
   for (std::size_t c = 0; c < kMostChannels; ++c) known.diffuse[c] /= data_.scale, known.f0[c] /= data_.scale;
   const MapModel none = {MapLobe::kNone, channels_, rules_.schlick};
-  // Coarse where it only serves as a start and to be compared with.
   const bool lobe_wanted = rules_.lobe != MapLobe::kNone;
-  MapDescent best =
-      Descend(none, data_, LambertStart(none, data_, mean_, bounds_, known, rules_.loss, &objective_, &dull_), bounds_,
-              rules_.loss, &objective_, lobe_wanted ? kCoarseTolerance : kFineTolerance);
+  MapDescent best = LambertStart(none, data_, mean_, bounds_, known, rules_.loss, &objective_, &start_weight_);
+  if (!lobe_wanted) best = Descend(none, data_, best.point, bounds_, rules_.loss, &objective_);
   MapModel model = none;
   if (lobe_wanted) {
     const MapModel with = {rules_.lobe, channels_, rules_.schlick};
@@ -156,14 +161,17 @@ TexelFit TexelFitter::Fit(const float* values, std::size_t stride, const HeldNum
     // Bayesian information criterion, with the profiled level of noise.
     const double count = static_cast<double>(fit.used) * channels_;
     const double more = FreeUnknowns(with, bounds_) - FreeUnknowns(none, bounds_);
-    const bool evidence = count * std::log(best.cost / lobe.cost) > more * std::log(count);
+    const auto evidence = [&](double without) {
+      return count * std::log(without / lobe.cost) > more * std::log(count);
+    };
     int iterations = best.iterations + lobe.iterations;
-    if (rules_.choice == LobeChoice::kAlways || evidence) {
-      best = lobe, model = with;
-    } else {
+    bool wins = rules_.choice == LobeChoice::kAlways || evidence((1 - kMayFall) * best.cost);
+    if (!wins) {
       best = Descend(none, data_, best.point, bounds_, rules_.loss, &objective_);
       iterations += best.iterations;
+      wins = evidence(best.cost);
     }
+    if (wins) best = lobe, model = with;
     best.iterations = iterations;
   }
   if (model.lobe == MapLobe::kNone && rules_.lobe != MapLobe::kNone) fit.status |= kMapNoLobe;

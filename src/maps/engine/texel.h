@@ -52,6 +52,7 @@ struct ProfileTerms {
 struct TexelFit {
   Vec3 normal = {kNan, kNan, kNan}, normal_error = {kNan, kNan, kNan};
   double normal_angle_error = kNan;  // radians: root of the sum of both tangents' variances
+  double normal_doubt = kNan;        // radians: errors.h
   double diffuse[kMostChannels] = {kNan, kNan, kNan}, diffuse_error[kMostChannels] = {kNan, kNan, kNan};
   double f0[kMostChannels] = {kNan, kNan, kNan}, f0_error[kMostChannels] = {kNan, kNan, kNan};
   double alpha_x = kNan, alpha_y = kNan, angle = kNan;
@@ -97,8 +98,9 @@ class TexelFitter {
   TexelData data_;
   TexelObjective objective_;
   MapBounds bounds_;
-  LightVector mean_, dull_;
-  std::vector<double> sorted_, all_means_;
+  LightVector mean_, start_weight_;
+  std::vector<double> all_means_, known_, largest_;
+  std::vector<std::size_t> used_;  // lights
   // Of the last Fit; no channels: nothing was fitted.
   MapModel last_model_;
   MapPoint last_point_;

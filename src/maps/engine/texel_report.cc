@@ -78,12 +78,13 @@ void TexelFitter::ReportNormal(const MapPoint& point, const MapErrors& errors, T
   if (point.normal.z <= bounds_.least_normal_z * 1.0001) fit->status |= kMapAtBound;
   const MapFrame frame = FrameOf(point.normal);
   fit->normal_angle_error = std::sqrt(errors.covariance[0][0] + errors.covariance[1][1]);
+  fit->normal_doubt = errors.doubt;
   fit->normal_error = {Along(errors, frame.t.x, frame.b.x), Along(errors, frame.t.y, frame.b.y),
                        Along(errors, frame.t.z, frame.b.z)};
   if (!(fit->normal_angle_error < kMostNormalError)) {
     fit->status |= kMapNotDetermined;
     fit->normal = fit->normal_error = {kNan, kNan, kNan};
-    fit->normal_angle_error = kNan;
+    fit->normal_angle_error = fit->normal_doubt = kNan;
   }
 }
 
@@ -119,12 +120,11 @@ void TexelFitter::Report(const MapModel& model, const MapDescent& best, TexelFit
   const MapErrors errors = ErrorsOf(model, data_, point, bounds_, rules_.loss, &objective_);
   double squares = 0, weights = 0;
   for (std::size_t l = 0; l < data_.lights.count; ++l) {
-    for (int c = 0; c < channels_; ++c) {
-      const double r = objective_.residual(c)[l];
-      squares += objective_.weight()[l] * r * r, weights += objective_.weight()[l];
-    }
+    double square = 0;
+    for (int c = 0; c < channels_; ++c) square += objective_.residual(c)[l] * objective_.residual(c)[l];
+    squares += objective_.weight()[l] * square, weights += objective_.weight()[l];
   }
-  fit->rms = std::sqrt(squares / weights);
+  fit->rms = std::sqrt(squares / (weights * channels_));
   if (!errors.regular) {
     fit->status |= kMapNotDetermined;
     return;

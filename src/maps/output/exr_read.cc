@@ -53,7 +53,8 @@ Maps ReadMapsExr(const std::filesystem::path& path, const std::function<bool(con
                                                           : MapLobe::kNone;
     const int quality = PartIndex(file, PartName(MapPart::kQuality));
     const bool clusters = quality >= 0 && file.header(quality).channels().findChannel("cluster") != nullptr;
-    maps.planes = PlanesFor({maps.lobe, maps.channels, clusters});
+    const bool doubt = quality >= 0 && file.header(quality).channels().findChannel("normal.doubt_deg") != nullptr;
+    maps.planes = PlanesFor({maps.lobe, maps.channels, clusters, doubt});
     const Imath::Box2i window = header.dataWindow();
     const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
     if (window.min.x != 0 || window.min.y != 0 || width > 65536 || height > 65536) throw fail("an unusual window");

@@ -39,6 +39,7 @@ std::vector<MapPlane> PlanesFor(const MapKind& kind) {
     if (lobe != MapLobe::kEllipsoid) continue;
     for (const char* name : {"tilt_x_deg", "tilt_y_deg"}) planes.push_back({part, name, type});
   }
+  if (kind.doubt) planes.push_back({MapPart::kQuality, "normal.doubt_deg", MapType::kFloat});
   planes.push_back({MapPart::kQuality, "rms", MapType::kFloat});
   planes.push_back({MapPart::kQuality, "scale", MapType::kFloat});
   planes.push_back({MapPart::kQuality, "used", MapType::kHalf});
@@ -65,6 +66,7 @@ void Fill(const TexelFit& fit, const MapKind& kind, float* values) {
     put(Degrees(errors ? fit.angle_error : fit.angle));
     for (int k = 0; k < 2 && lobe == MapLobe::kEllipsoid; ++k) put(Degrees(errors ? fit.tilt_error[k] : fit.tilt[k]));
   }
+  if (kind.doubt) put(Degrees(fit.normal_doubt));
   put(fit.rms), put(fit.scale), put(fit.used);
   if (kind.clusters) put(fit.cluster);
   put(fit.status);

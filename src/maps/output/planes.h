@@ -24,12 +24,13 @@ struct MapKind {
   MapLobe lobe = MapLobe::kNone;
   int channels = 0;
   bool clusters = false;  // texels are parted
+  bool doubt = true;      // files of older versions have none
 };
 
 // In the order of Fill. Parameters: normal.x .y .z, diffuse.C, f0.C, alpha (or alpha_x, alpha_y, angle_deg and, of an
 // ellipsoid, tilt_x_deg, tilt_y_deg), C of R, G, B, or Y alone. Errors, standard: the same names, of alphas the error
-// of the logarithm as ln_alpha, and normal.angle_deg. Quality: rms (units of scale), scale, used (lights), cluster
-// (from 1; 0: none), status (MapStatus), the last.
+// of the logarithm as ln_alpha, and normal.angle_deg. Quality: normal.doubt_deg (engine/errors.h), rms (units of
+// scale), scale, used (lights), cluster (from 1; 0: none), status (MapStatus), the last.
 std::vector<MapPlane> PlanesFor(const MapKind& kind);
 
 // values[plane]; what PlanesFor names. NaN for what is not there or not determined.

@@ -97,6 +97,10 @@ std::vector<Tile> ReportTiles(const Maps& maps, const Stack& stack, const MapsPa
   tiles.push_back({"Status", StatusPicture(maps), std::nullopt,
                    "green: all determined; blue: no lobe by evidence; purple: something not determined; orange: at a "
                    "bound; red: not converged; black: too few values"});
+  if (PlaneIndex(maps.planes, MapPart::kQuality, "normal.doubt_deg") < maps.planes.size()) {
+    tiles.push_back(Scalar(maps, MapPart::kQuality, "normal.doubt_deg", "Doubt of the normal",
+                           "degrees, if the misfit is no noise", true));
+  }
   tiles.push_back(Scalar(maps, MapPart::kQuality, "rms", "Residual", "of the texel's 90th percentile", true));
   if (PlaneIndex(maps.planes, MapPart::kQuality, "cluster") < maps.planes.size()) {
     tiles.push_back(Scalar(maps, MapPart::kQuality, "cluster", "Cluster", "texels that share numbers", false));
