@@ -349,7 +349,6 @@ int Speed(bool quick) {
 
   const std::size_t few = std::min<std::size_t>(texels, 300);
   start = Seconds();
-  double ceres_cost = 0, our_cost = 0;
   std::size_t as_low = 0;
   for (std::size_t k = 0; k < few; ++k) {
     const double scale = fits[k].scale;
@@ -376,7 +375,6 @@ int Speed(bool quick) {
     options.function_tolerance = 1e-10;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
-    ceres_cost += summary.final_cost, our_cost += fits[k].cost;
     as_low += fits[k].cost <= summary.final_cost * (1 + 1e-6) ? 1 : 0;
   }
   const double autodiff = (Seconds() - start) / static_cast<double>(few);
@@ -397,6 +395,6 @@ int main(int argc, char** argv) {
   if (what == "doubts") return lobefit::Doubts();
   if (what == "hills") return lobefit::ShadedHills();
   if (what == "speed") return lobefit::Speed(argc > 2 && std::strcmp(argv[2], "--quick") == 0);
-  std::fprintf(stderr, "bench_maps normals STACK TRUTH.csv | search STACK [STEP] | hills | speed [--quick]\n");
+  std::fprintf(stderr, "bench_maps normals STACK TRUTH.csv | search STACK [STEP] | doubts | hills | speed [--quick]\n");
   return 2;
 }

@@ -23,7 +23,6 @@ BumpCenters Centers() {
   }
   return centers;
 }
-const BumpCenters kCenters = Centers();
 
 }  // namespace
 
@@ -38,6 +37,7 @@ double DoubtOf(const TexelData& data, const MapMatrix& inverse, int channels, Te
     squares += objective->weight()[l] * rr, predicted += objective->weight()[l] * yy;
   }
   const auto pull = objective->Pulls(data, inverse);
+  static const BumpCenters kCenters = Centers();
   return std::sqrt(squares / predicted * SmoothSquares(kCenters, kSmoothShare, data.lights, pull[0], pull[1]));
 }
 
