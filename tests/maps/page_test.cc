@@ -1,4 +1,6 @@
 // The page of maps: what stands in the file, and, where Chromium is installed, what it does in a browser.
+#include <utility>
+
 #include "tests/maps/texels.h"
 #include "tests/support/browser_page.h"
 #include "tests/support/folder_test.h"
@@ -8,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lobefit/base/text/base64.h"
+#include "lobefit/maps/report/tiles.h"
 #include "lobefit/maps/report/web/html.h"
 #include "lobefit/plot/color.h"
 
@@ -66,6 +69,24 @@ TEST_P(MapsPageTest, IsOneFileThatNamesNoOther) {
   EXPECT_THAT(html_, HasSubstr("<img alt=\"Normal: x right: red, y up: green, z to the camera: blue\""));
   EXPECT_THAT(html_, HasSubstr("<tr><th scope=\"row\">left out</th><td>1</td>"));
   EXPECT_THAT(html_, HasSubstr("<tr><th scope=\"row\">fitted</th><td>575</td><td>100.0 %</td></tr>"));
+}
+
+TEST_P(MapsPageTest, PhotographsStandBesideTheirFit) {
+  // With clusters there is one tile more before them.
+  Maps clustered = hills_.maps;
+  clustered.planes.push_back({MapPart::kQuality, "cluster", MapType::kFloat});
+  clustered.rows.values.push_back(clustered.rows.values.back());
+  for (const Maps* maps : {&std::as_const(hills_.maps), &std::as_const(clustered)}) {
+    const std::vector<Tile> tiles = ReportTiles(*maps, stack_, page_);
+    std::size_t pairs = 0;
+    for (std::size_t k = 0; k + 1 < tiles.size(); ++k) {
+      if (!tiles[k].title.starts_with("Photograph")) continue;
+      ++pairs;
+      EXPECT_THAT(tiles[k + 1].title, testing::StartsWith("Fit"));
+      EXPECT_LT(k % kTileColumns, static_cast<std::size_t>(kTileColumns - 1));
+    }
+    EXPECT_EQ(pairs, 2U);
+  }
 }
 
 TEST_P(MapsPageTest, RelightsInABrowserAsTheProgramDoes) {

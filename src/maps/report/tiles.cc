@@ -74,6 +74,8 @@ void AddPair(const Maps& maps, const Stack& stack, const MapsPage& page, const R
   std::nth_element(finite.begin(), at, finite.end());
   const double white = std::max(static_cast<double>(*at), 1e-12);
   const char* kind = light.fitted ? "the worst light of the fit" : "a light that was not fitted";
+  // Both in one row.
+  if (tiles->size() % kTileColumns == kTileColumns - 1) tiles->push_back({});
   tiles->push_back(
       {fmt::format("Photograph {}", light.light + 1), PhotoPicture(pair.photograph, maps, white), std::nullopt, kind});
   tiles->push_back({fmt::format("Fit, {:.1f} dB", light.psnr), PhotoPicture(pair.fit, maps, white), std::nullopt,
