@@ -161,6 +161,21 @@ void ReportByFile(const FileErrors& errors, Material* material) {
                   largest, of, freedom));
 }
 
+namespace {
+
+// The covariances of the border's coordinates (ArrowShape) where no channel meets another.
+Eigen::MatrixXd BorderCovariance(const Eigen::MatrixXd& hessian, const ArrowShape& arrow) {
+  Eigen::MatrixXd rest = hessian(arrow.border, arrow.border);
+  for (const std::vector<int>& own : arrow.own) {
+    if (own.empty()) continue;
+    const Eigen::MatrixXd across = hessian(arrow.border, own), block = hessian(own, own);
+    rest -= across * block.completeOrthogonalDecomposition().pseudoInverse() * across.transpose();
+  }
+  return rest.completeOrthogonalDecomposition().pseudoInverse();
+}
+
+}  // namespace
+
 void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, const std::vector<double>& u,
                               ThreadPool* pool, Material* material) {
   constexpr double kMostShare = 0.5;
@@ -170,7 +185,13 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
   Eigen::VectorXd gradient;
   const double cost = Linearise(problem, layout, u.data(), pool, &hessian, &gradient);
   const double square = 2 * cost / static_cast<double>(problem.size() * problem.channels());
-  const Eigen::MatrixXd covariance = square * hessian.completeOrthogonalDecomposition().pseudoInverse();
+  // Of 800 channels the whole would take minutes.
+  const bool apart =
+      layout.size() > kMostFull && !layout.recipe().instrument.drift && layout.recipe().energy == EnergyChoice::kFree;
+  const ArrowShape arrow = ArrowShapeOf(layout);
+  const Eigen::MatrixXd covariance =
+      square *
+      (apart ? BorderCovariance(hessian, arrow) : hessian.completeOrthogonalDecomposition().pseudoInverse().eval());
   const std::vector<Parameter> parameters = Parameters(material->model);
   for (std::size_t l = 0; l < material->model.lobes.size(); ++l) {
     const Lobe& lobe = material->model.lobes[l];
@@ -180,7 +201,9 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
       FittedParameter& fitted = material->parameters[first + k];
       for (std::size_t i = 0; i < coordinates.size(); ++i) {
         if (coordinates[i].name != parameters[first + k].name) continue;
-        const auto at = static_cast<Eigen::Index>(i);
+        // Profiles are the border's.
+        const auto in_border = std::find(arrow.border.begin(), arrow.border.end(), static_cast<int>(i));
+        const auto at = apart ? in_border - arrow.border.begin() : static_cast<Eigen::Index>(i);
         if (!(covariance(at, at) * coordinates[i].prior > kMostShare)) continue;
         fitted.standard_error = fitted.standard_error_clustered = {kNan};
         const double from = GridOf(lobe)->spline()->FirstRadius(k);

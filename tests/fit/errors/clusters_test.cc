@@ -57,6 +57,20 @@ TEST(InverseRoot, OfManyChannelsIsThatOfTheWhole) {
   EXPECT_LT((InverseRootTimes(many.sum, score) - eigen.operatorInverseSqrt() * score).norm(), 1e-12 * score.norm());
 }
 
+// Of more coordinates than kMostFull, with one direction that the cluster alone determines and others near it: by powers.
+TEST(InverseRoot, OfManyChannelsThatAClusterNearlyDecides) {
+  constexpr Eigen::Index kSize = 450;
+  const Eigen::VectorXd score = Eigen::VectorXd::LinSpaced(kSize, -1, 2);
+  Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(kSize, 0, 0.9);
+  values.tail(4) << 0.99, 0.999, 0.9999, 1;
+  const Matrix curvature = WithEigenvalues(values);
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(curvature);
+  const Eigen::VectorXd factor =
+      eigen.eigenvalues().unaryExpr([](double x) { return 1 - x > kAlone ? 1 / std::sqrt(1 - x) : 0.0; });
+  const Eigen::VectorXd expected = eigen.eigenvectors() * factor.cwiseProduct(eigen.eigenvectors().transpose() * score);
+  EXPECT_LT((InverseRootOf(curvature, score) - expected).norm(), 1e-8 * expected.norm());
+}
+
 // A number at its bound has no part in any coordinate.
 TEST(UnitColumns, ARowOfZerosStaysOne) {
   Eigen::MatrixXd rows(2, 3);
