@@ -163,13 +163,14 @@ void ReportByFile(const FileErrors& errors, Material* material) {
 
 namespace {
 
-// The covariances of the border's coordinates (ArrowShape) where no channel meets another.
-Eigen::MatrixXd BorderCovariance(const Eigen::MatrixXd& hessian, const ArrowShape& arrow) {
-  Eigen::MatrixXd rest = hessian(arrow.border, arrow.border);
-  for (const std::vector<int>& own : arrow.own) {
-    if (own.empty()) continue;
-    const Eigen::MatrixXd across = hessian(arrow.border, own), block = hessian(own, own);
-    rest -= across * block.completeOrthogonalDecomposition().pseudoInverse() * across.transpose();
+// The inverse's part of the border, by Schur's complement: of 800 channels the whole would take minutes and 300 MB.
+// Exact for what is determined, whatever directions of the rest are not.
+Eigen::MatrixXd InverseOfBorder(const ArrowMatrix& hessian) {
+  Eigen::MatrixXd rest = hessian.border;
+  for (std::size_t c = 0; c < hessian.own.size(); ++c) {
+    if (hessian.own[c].size() == 0) continue;
+    const Eigen::MatrixXd inverse = hessian.own[c].completeOrthogonalDecomposition().pseudoInverse();
+    rest -= hessian.across[c] * inverse * hessian.across[c].transpose();
   }
   return rest.completeOrthogonalDecomposition().pseudoInverse();
 }
@@ -181,17 +182,12 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
   constexpr double kMostShare = 0.5;
   const std::vector<Coordinate>& coordinates = layout.coordinates();
   if (std::none_of(coordinates.begin(), coordinates.end(), [](const Coordinate& c) { return c.prior > 0; })) return;
-  Eigen::MatrixXd hessian;
+  ArrowMatrix hessian;
   Eigen::VectorXd gradient;
-  const double cost = Linearise(problem, layout, u.data(), pool, &hessian, &gradient);
+  const double cost = LineariseBlocks(problem, layout, u.data(), pool, &hessian, &gradient);
   const double square = 2 * cost / static_cast<double>(problem.size() * problem.channels());
-  // Of 800 channels the whole would take minutes.
-  const bool apart =
-      layout.size() > kMostFull && !layout.recipe().instrument.drift && layout.recipe().energy == EnergyChoice::kFree;
-  const ArrowShape arrow = ArrowShapeOf(layout);
-  const Eigen::MatrixXd covariance =
-      square *
-      (apart ? BorderCovariance(hessian, arrow) : hessian.completeOrthogonalDecomposition().pseudoInverse().eval());
+  const std::vector<int>& border = hessian.shape.border;  // to which profiles belong
+  const Eigen::MatrixXd covariance = square * InverseOfBorder(hessian);
   const std::vector<Parameter> parameters = Parameters(material->model);
   for (std::size_t l = 0; l < material->model.lobes.size(); ++l) {
     const Lobe& lobe = material->model.lobes[l];
@@ -199,12 +195,11 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
     const std::size_t first = FirstParameter(material->model, l) + kEllipseParameters;
     for (std::size_t k = 0; first + k < FirstFresnel(material->model, l); ++k) {
       FittedParameter& fitted = material->parameters[first + k];
-      for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        if (coordinates[i].name != parameters[first + k].name) continue;
-        // Profiles are the border's.
-        const auto in_border = std::find(arrow.border.begin(), arrow.border.end(), static_cast<int>(i));
-        const auto at = apart ? in_border - arrow.border.begin() : static_cast<Eigen::Index>(i);
-        if (!(covariance(at, at) * coordinates[i].prior > kMostShare)) continue;
+      for (std::size_t i = 0; i < border.size(); ++i) {
+        const Coordinate& coordinate = coordinates[static_cast<std::size_t>(border[i])];
+        if (coordinate.name != parameters[first + k].name) continue;
+        const auto at = static_cast<Eigen::Index>(i);
+        if (!(covariance(at, at) * coordinate.prior > kMostShare)) continue;
         fitted.standard_error = fitted.standard_error_clustered = {kNan};
         const double from = GridOf(lobe)->spline()->FirstRadius(k);
         material->degenerate.push_back(fmt::format(

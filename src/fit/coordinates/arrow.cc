@@ -1,5 +1,7 @@
 #include "lobefit/fit/coordinates/arrow.h"
 
+#include <numeric>
+
 #include "lobefit/fit/coordinates/coordinates.h"
 
 namespace lobefit {
@@ -18,6 +20,14 @@ ArrowShape ArrowShapeOf(const Layout& layout) {
   shape.own.resize(layout.channels());
   for (std::size_t i = 0; i < layout.size(); ++i)
     (channel[i] < 0 ? shape.border : shape.own[static_cast<std::size_t>(channel[i])]).push_back(static_cast<int>(i));
+  return shape;
+}
+
+ArrowShape BorderOnly(const Layout& layout) {
+  ArrowShape shape;
+  shape.border.resize(layout.size());
+  std::iota(shape.border.begin(), shape.border.end(), 0);
+  shape.own.resize(layout.channels());
   return shape;
 }
 

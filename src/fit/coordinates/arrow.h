@@ -16,6 +16,8 @@ struct ArrowShape {
   std::vector<std::vector<int>> own;  // [channel]
 };
 ArrowShape ArrowShapeOf(const Layout& layout);
+// Where something couples the channels: all is border.
+ArrowShape BorderOnly(const Layout& layout);
 
 // A symmetric matrix of that form.
 struct ArrowMatrix {

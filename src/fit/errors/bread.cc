@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -53,30 +53,6 @@ Eigen::MatrixXd LossCurvature(const Problem& problem, const Layout& layout, cons
   return partial[0];
 }
 
-// The coordinates that no bound holds; all of them in the border where a loss or a gain couples the channels.
-ArrowShape FreeArrow(const Layout& layout, const std::vector<bool>& at_bound) {
-  const bool coupled = layout.recipe().loss != Loss::kNone || layout.recipe().instrument.drift;
-  ArrowShape shape = ArrowShapeOf(layout);
-  if (coupled) {
-    shape.border.resize(layout.size());
-    std::iota(shape.border.begin(), shape.border.end(), 0);
-    for (std::vector<int>& own : shape.own) own.clear();
-  }
-  const auto held = [&](int i) { return at_bound[static_cast<std::size_t>(i)]; };
-  std::erase_if(shape.border, held);
-  for (std::vector<int>& own : shape.own) std::erase_if(own, held);
-  return shape;
-}
-
-Eigen::MatrixXd Part(const Eigen::MatrixXd& matrix, const std::vector<int>& rows, const std::vector<int>& columns) {
-  Eigen::MatrixXd part(rows.size(), columns.size());
-  for (Eigen::Index j = 0; j < part.cols(); ++j) {
-    for (Eigen::Index i = 0; i < part.rows(); ++i)
-      part(i, j) = matrix(rows[static_cast<std::size_t>(i)], columns[static_cast<std::size_t>(j)]);
-  }
-  return part;
-}
-
 SymmetricEigen Decomposed(const Eigen::MatrixXd& symmetric) {
   if (symmetric.size() == 0) return {Eigen::VectorXd(0), symmetric};
   return DecomposeSymmetric(symmetric);
@@ -125,20 +101,36 @@ void AddPriors(const Problem& problem, const Layout& layout, double cost, const 
   }
 }
 
-// The blocks of A, scaled, that W is made of: as FreeArrow says, without what is held.
-struct Blocks {
-  Eigen::MatrixXd border;
-  std::vector<Eigen::MatrixXd> own, across;  // [channel]: own x own, own x border
+// Positions within a list of coordinates of those that no bound holds, and these.
+struct Free {
+  std::vector<int> positions, coordinates;
+
+  Free(const std::vector<int>& all, const std::vector<bool>& at_bound) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (at_bound[static_cast<std::size_t>(all[k])]) continue;
+      positions.push_back(static_cast<int>(k));
+      coordinates.push_back(all[k]);
+    }
+  }
 };
 
-Blocks BlocksOf(const Eigen::MatrixXd& a, const ArrowShape& free, const Eigen::VectorXd& scale) {
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
-  Blocks blocks = {Part(scaled, free.border, free.border), {}, {}};
-  for (const std::vector<int>& own : free.own) {
-    blocks.own.push_back(Part(scaled, own, own));
-    blocks.across.push_back(Part(scaled, own, free.border));
+// A without the coordinates that a bound holds, rows and columns scaled.
+ArrowMatrix FreePart(const ArrowMatrix& a, const std::vector<bool>& at_bound, const Eigen::VectorXd& scale) {
+  const auto part = [&scale](const Eigen::MatrixXd& block, const Free& rows, const Free& columns) {
+    return Eigen::MatrixXd(scale(rows.coordinates).asDiagonal() * block(rows.positions, columns.positions) *
+                           scale(columns.coordinates).asDiagonal());
+  };
+  const Free border(a.shape.border, at_bound);
+  ArrowMatrix free;
+  free.shape.border = border.coordinates;
+  free.border = part(a.border, border, border);
+  for (std::size_t c = 0; c < a.own.size(); ++c) {
+    const Free own(a.shape.own[c], at_bound);
+    free.shape.own.push_back(own.coordinates);
+    free.across.push_back(part(a.across[c], border, own));
+    free.own.push_back(part(a.own[c], own, own));
   }
-  return blocks;
+  return free;
 }
 
 }  // namespace
@@ -148,10 +140,10 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
   const auto n = static_cast<Eigen::Index>(layout.size());
   Bread bread;
   bread.undetermined.assign(layout.size(), false);
-  Eigen::MatrixXd a;
+  ArrowMatrix a;
   Eigen::VectorXd gradient;
   std::vector<GainLink> links;
-  const double cost = Linearise(problem, layout, u.data(), pool, &a, &gradient, &links);
+  const double cost = LineariseBlocks(problem, layout, u.data(), pool, &a, &gradient, &links);
   for (std::size_t i = 0; i < layout.size(); ++i) {
     const Coordinate& coordinate = layout.coordinates()[i];
     const double slack = BoundSlack(coordinate);
@@ -159,14 +151,17 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
     bread.at_bound.push_back((u[i] <= coordinate.low + slack && slope >= 0) ||
                              (u[i] >= coordinate.high - slack && slope <= 0));
   }
-  const Eigen::VectorXd scale = a.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 1.0; });
-  if (layout.recipe().loss != Loss::kNone) a += LossCurvature(problem, layout, layout.ToKernel(u.data()), pool);
+  const Eigen::VectorXd scale = a.Diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 1.0; });
+  if (layout.recipe().loss != Loss::kNone) {
+    ArrowMatrix coupled(BorderOnly(layout));
+    coupled.border = a.Dense() + LossCurvature(problem, layout, layout.ToKernel(u.data()), pool);
+    a = std::move(coupled);
+  }
 
   // With D a channel's own block, E its block with the border and S the border's, T = D^-1 E:
   //   A^-1 = sum of own (D^-1) + (1, -T)^T (S - sum of E^T T)^-1 (1, -T).
-  const ArrowShape arrow = FreeArrow(layout, bread.at_bound);
-  const Blocks blocks = BlocksOf(a, arrow, scale);
-  a.resize(0, 0);
+  const ArrowMatrix blocks = FreePart(a, bread.at_bound, scale);
+  const ArrowShape& arrow = blocks.shape;
   const std::size_t channels = layout.channels();
   WhitenedForm& form = bread.form;
   form.border = form.size = static_cast<Eigen::Index>(arrow.border.size());
@@ -188,8 +183,8 @@ Bread FactorBread(const Problem& problem, const Layout& layout, const std::vecto
       MarkFlat(layout, direction, &bread);
     }
     roots[c] = eigen.vectors * factor.asDiagonal();
-    t[c] = roots[c] * (roots[c].transpose() * blocks.across[c]);
-    schur -= blocks.across[c].transpose() * t[c];
+    t[c] = roots[c] * (roots[c].transpose() * blocks.across[c].transpose());
+    schur -= blocks.across[c] * t[c];
   }
   form.full = layout.size() <= most_full || form.size == form.border;
   const SymmetricEigen eigen = Decomposed(schur);

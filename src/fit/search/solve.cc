@@ -47,6 +47,22 @@ double Linearise(const Problem& problem, const Layout& layout, const double* u, 
   return sums.sum_rho / 2;
 }
 
+double LineariseBlocks(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool,
+                       ArrowMatrix* hessian, Eigen::VectorXd* gradient, std::vector<GainLink>* links) {
+  if (problem.gains() == nullptr && problem.energy() == nullptr)
+    return Linearise(problem, layout, u, pool, hessian, gradient);
+  Eigen::MatrixXd dense;
+  const double cost = Linearise(problem, layout, u, pool, &dense, gradient, links);
+  *hessian = ArrowMatrix(problem.gains() != nullptr ? BorderOnly(layout) : ArrowShapeOf(layout));
+  const ArrowShape& shape = hessian->shape;
+  hessian->border = dense(shape.border, shape.border);
+  for (std::size_t c = 0; c < shape.own.size(); ++c) {
+    hessian->across[c] = dense(shape.border, shape.own[c]);
+    hessian->own[c] = dense(shape.own[c], shape.own[c]);
+  }
+  return cost;
+}
+
 BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, ThreadPool* pool) {
   const auto n = static_cast<Eigen::Index>(layout.size());
   BoundedObjective objective;

@@ -49,6 +49,10 @@ double Linearise(const Problem& problem, const Layout& layout, const double* u, 
 // The same as an arrow, without gains and energy rule, which couple the channels.
 double Linearise(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool, ArrowMatrix* hessian,
                  Eigen::VectorXd* gradient);
+// The same as an arrow for every problem: where gains couple the channels all is border, and an energy rule's part goes
+// through a dense matrix.
+double LineariseBlocks(const Problem& problem, const Layout& layout, const double* u, ThreadPool* pool,
+                       ArrowMatrix* hessian, Eigen::VectorXd* gradient, std::vector<GainLink>* links = nullptr);
 // The problem over the box of the layout's bounds; all arguments must outlive it.
 BoundedObjective ObjectiveOf(const Problem& problem, const Layout& layout, ThreadPool* pool);
 
