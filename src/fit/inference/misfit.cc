@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/SparseCholesky>
 #include <fmt/format.h>
 
 #include "lobefit/core/ellipsoid/off_center.h"
+#include "lobefit/fit/coordinates/arrow.h"
 #include "lobefit/fit/errors/sample_rows.h"
+#include "lobefit/fit/inference/times_inverse.h"
 #include "lobefit/fit/metric/transform.h"
-#include "lobefit/fit/search/symmetric_eigen.h"
 #include "lobefit/math/directions.h"
 #include "lobefit/math/student_t.h"
 
@@ -86,7 +86,7 @@ struct Group {
 
 struct Sums {
   std::vector<Group> groups;
-  Eigen::MatrixXd hessian;            // J^T J, upper half
+  ArrowMatrix hessian;                // J^T J
   Eigen::MatrixXd bin_rows;           // bins x coordinates: sum of the rows of J in a bin
   double squares = 0, residuals = 0;  // of all residuals, and their number
 };
@@ -101,6 +101,39 @@ std::vector<int> FreeCoordinates(const Layout& layout, const std::vector<double>
     if (u[i] > coordinate.low + slack && u[i] < coordinate.high - slack) place[i] = static_cast<int>((*count)++);
   }
   return place;
+}
+
+// Of the coordinates that are not held, of which gains, the last, are the border's.
+ArrowShape ShapeOf(const Layout& layout, const std::vector<int>& place, Eigen::Index free, Eigen::Index count) {
+  const auto placed = [&place](const std::vector<int>& coordinates) {
+    std::vector<int> known;
+    for (const int i : coordinates) {
+      if (place[static_cast<std::size_t>(i)] >= 0) known.push_back(place[static_cast<std::size_t>(i)]);
+    }
+    return known;
+  };
+  const ArrowShape all = ArrowShapeOf(layout);
+  ArrowShape shape = {placed(all.border), {}};
+  for (Eigen::Index gain = free; gain < count; ++gain) shape.border.push_back(static_cast<int>(gain));
+  for (const std::vector<int>& own : all.own) shape.own.push_back(placed(own));
+  return shape;
+}
+
+// A coordinate of a row of J in the arrow: within the border or within its channel's own.
+struct Spot {
+  bool border;
+  Eigen::Index index;
+};
+
+std::vector<Spot> SpotsOf(const ArrowShape& shape, Eigen::Index count) {
+  std::vector<Spot> spots(static_cast<std::size_t>(count));
+  const auto put = [&spots](const std::vector<int>& coordinates, bool border) {
+    for (std::size_t k = 0; k < coordinates.size(); ++k)
+      spots[static_cast<std::size_t>(coordinates[k])] = {border, static_cast<Eigen::Index>(k)};
+  };
+  put(shape.border, true);
+  for (const std::vector<int>& own : shape.own) put(own, false);
+  return spots;
 }
 
 // Change of the residuals of a piece with the logarithm of all its values, [channel] as rows of `piece`: what a lamp
@@ -133,7 +166,8 @@ Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<dou
   const std::vector<int> place = FreeCoordinates(layout, u, &free);
   const Eigen::Index n = free + (by_incidence ? 0 : static_cast<Eigen::Index>(incidences.wi.size()));
   Sums sums;
-  sums.hessian.setZero(n, n);
+  sums.hessian = ArrowMatrix(ShapeOf(layout, place, free, n));
+  const std::vector<Spot> spots = SpotsOf(sums.hessian.shape, n);
   sums.bin_rows.setZero(kBins, n);
   const Group empty = {{}, {}, Eigen::VectorXd::Zero(n)};
   if (by_incidence) {
@@ -183,8 +217,14 @@ Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<dou
         for (const auto& [to, value] : row) {
           rows(to) += value;
           group.score(to) += r * value;
+          const Spot at = spots[static_cast<std::size_t>(to)];
           for (const auto& [other, factor] : row) {
-            if (to <= other) sums.hessian(to, other) += value * factor;
+            const Spot beside = spots[static_cast<std::size_t>(other)];
+            if (!at.border && beside.border) continue;  // its mirror image is kept
+            Eigen::MatrixXd* block = !at.border      ? &sums.hessian.own[c]
+                                     : beside.border ? &sums.hessian.border
+                                                     : &sums.hessian.across[c];
+            (*block)(at.index, beside.index) += value * factor;
           }
         }
       }
@@ -198,29 +238,6 @@ Sums SumBins(const Problem& problem, const Layout& layout, const std::vector<dou
     }
   }
   return sums;
-}
-
-// rows H^-1 without the directions that the data do not determine; of H the upper half is there.
-Eigen::MatrixXd TimesInverse(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& hessian) {
-  if (hessian.size() == 0) return rows;
-  const Eigen::VectorXd scale = hessian.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 1.0; });
-  constexpr double kHair = 1e-10;
-  // Coordinates of many channels meet in a few of the shape only: a factorisation keeps those zeros, where an inverse
-  // took a sixth of a fit with 800 channels. A hair of curvature holds what is not determined.
-  constexpr Eigen::Index kMostDecomposed = 200;
-  if (hessian.rows() > kMostDecomposed) {
-    Eigen::SparseMatrix<double> scaled = hessian.sparseView();
-    scaled = (scale.asDiagonal() * scaled * scale.asDiagonal()).eval();
-    for (Eigen::Index i = 0; i < scaled.rows(); ++i) scaled.coeffRef(i, i) += kHair;
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper> factor(scaled);
-    const Eigen::MatrixXd right = scale.asDiagonal() * rows.transpose();
-    return (scale.asDiagonal() * factor.solve(right)).transpose();
-  }
-  const Eigen::MatrixXd whole = hessian.selfadjointView<Eigen::Upper>();
-  const SymmetricEigen eigen = DecomposeSymmetric(scale.asDiagonal() * whole * scale.asDiagonal());
-  const Eigen::VectorXd inverse = eigen.values.unaryExpr([](double x) { return x > kHair ? 1 / x : 0.0; });
-  const Eigen::MatrixXd half = scale.asDiagonal() * eigen.vectors;
-  return rows * Eigen::MatrixXd(half * inverse.asDiagonal() * half.transpose());
 }
 
 }  // namespace
