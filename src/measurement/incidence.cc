@@ -1,9 +1,10 @@
 #include "lobefit/measurement/incidence.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
-#include <unordered_map>
 
 #include "lobefit/math/directions.h"
 
@@ -15,29 +16,35 @@ constexpr double kDegree = kPi / 180;
 // Joins unit directions that lie near each other, in time linear in their number. What lies within a quarter of the
 // resolution of a kept direction counts as that; kept directions within the resolution of each other, and those that a
 // chain of such pairs joins, are one.
+//
+// Kept directions stand in the cells of a grid over x and y: what is near on the sphere is near there, above the horizon
+// or below. Cells are twice the resolution wide, so that what is within it lies in at most four. The grid repeats itself
+// where it would be large: what a cell holds is asked for its distance anyway.
 class DirectionMerger {
  public:
   explicit DirectionMerger(double resolution)
-      : resolution_(resolution), near_(Chord2(resolution)), same_(Chord2(resolution / 4)) {}
+      : resolution_(resolution),
+        near_(Chord2(resolution)),
+        same_(Chord2(resolution / 4)),
+        side_(std::bit_ceil(static_cast<std::size_t>(std::min(1 / resolution + 2, kMostSide)))),
+        newest_(side_ * side_, kNone) {}
 
   // Index of the kept direction that `w` counts as.
   std::uint32_t Add(const Vec3& w) {
     // Files list an incidence's samples together.
-    if (last_ < kept_.size() && IsWithin(w, kept_[last_], same_)) return last_;
+    if (last_ < kept_.size() && IsWithin(w, last_, same_)) return last_;
     const auto mine = static_cast<std::uint32_t>(kept_.size());
     std::uint32_t found = mine;
     ForNear(w, resolution_ / 4, [&](std::uint32_t other) {
-      if (found == mine && IsWithin(w, kept_[other], same_)) found = other;
+      if (found == mine && IsWithin(w, other, same_)) found = other;
     });
     if (found == mine) {
-      parent_.push_back(mine);
+      std::uint32_t& newest = newest_[CellOf(Line(w.x), Line(w.y))];
+      kept_.push_back({w, mine, newest});
       ForNear(w, resolution_, [&](std::uint32_t other) {
-        if (IsWithin(w, kept_[other], near_)) parent_[Root(other)] = mine;
+        if (IsWithin(w, other, near_)) kept_[Root(other)].parent = mine;
       });
-      kept_.push_back(w);
-      const auto [cell, is_new] = newest_.try_emplace(Packed(CellOf(w.x), CellOf(w.y), CellOf(w.z)), mine);
-      before_.push_back(is_new ? mine : cell->second);
-      cell->second = mine;
+      newest = mine;
     }
     return last_ = found;
   }
@@ -50,7 +57,7 @@ class DirectionMerger {
     std::vector<std::uint8_t> fills(kept_.size(), 0);
     for (std::uint32_t k = 0; k < kept_.size(); ++k) {
       groups[k] = Root(k);
-      if (!IsWithin(kept_[k], kept_[groups[k]], longest)) fills[groups[k]] = 1;
+      if (!IsWithin(kept_[k].w, groups[k], longest)) fills[groups[k]] = 1;
     }
     for (std::uint32_t k = 0; k < kept_.size(); ++k) {
       if (fills[groups[k]] != 0) groups[k] = k;
@@ -59,47 +66,44 @@ class DirectionMerger {
   }
 
  private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr double kMostSide = 1024;  // 4 MB of cells: 0.1 degree over all of x and y
+  struct Kept {
+    Vec3 w;
+    std::uint32_t parent;  // itself at the root of what is one
+    std::uint32_t before;  // the one that came to the cell before it, or kNone
+  };
+
   static double Chord2(double angle) { return 4 * std::pow(std::sin(angle / 2), 2); }
-  static bool IsWithin(const Vec3& a, const Vec3& b, double chord2) {
-    const Vec3 d = a - b;
+  bool IsWithin(const Vec3& w, std::uint32_t other, double chord2) const {
+    const Vec3 d = w - kept_[other].w;
     return Dot(d, d) <= chord2;
   }
-  // Cells are cubes of twice the resolution: what is within it lies in few of them.
-  std::int64_t CellOf(double coordinate) const {
+  std::int64_t Line(double coordinate) const {
     return static_cast<std::int64_t>(std::floor(coordinate / (2 * resolution_)));
   }
-  static std::int64_t Packed(std::int64_t x, std::int64_t y, std::int64_t z) {
-    constexpr std::int64_t kMost = std::int64_t{1} << 21;
-    return (x * kMost + y) * kMost + z;
+  std::size_t CellOf(std::int64_t x, std::int64_t y) const {
+    return (static_cast<std::size_t>(x) & (side_ - 1)) * side_ + (static_cast<std::size_t>(y) & (side_ - 1));
   }
   // Visits what may lie within `reach`, at most the resolution.
   template <class Visit>
   void ForNear(const Vec3& w, double reach, const Visit& visit) const {
-    for (std::int64_t x = CellOf(w.x - reach); x <= CellOf(w.x + reach); ++x) {
-      for (std::int64_t y = CellOf(w.y - reach); y <= CellOf(w.y + reach); ++y) {
-        for (std::int64_t z = CellOf(w.z - reach); z <= CellOf(w.z + reach); ++z) {
-          const auto cell = newest_.find(Packed(x, y, z));
-          if (cell == newest_.end()) continue;
-          for (std::uint32_t other = cell->second;; other = before_[other]) {
-            visit(other);
-            if (before_[other] == other) break;
-          }
-        }
+    for (std::int64_t x = Line(w.x - reach); x <= Line(w.x + reach); ++x) {
+      for (std::int64_t y = Line(w.y - reach); y <= Line(w.y + reach); ++y) {
+        for (std::uint32_t other = newest_[CellOf(x, y)]; other != kNone; other = kept_[other].before) visit(other);
       }
     }
   }
   std::uint32_t Root(std::uint32_t k) {
-    while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
+    while (kept_[k].parent != k) k = kept_[k].parent = kept_[kept_[k].parent].parent;
     return k;
   }
 
   double resolution_, near_, same_;
   std::uint32_t last_ = 0;
-  std::vector<Vec3> kept_;
-  std::vector<std::uint32_t> parent_;
-  // The kept direction that came last to a cell, and to each the one before it, itself where there is none.
-  std::unordered_map<std::int64_t, std::uint32_t> newest_;
-  std::vector<std::uint32_t> before_;
+  std::vector<Kept> kept_;
+  std::size_t side_;                   // cells along x and along y, a power of two
+  std::vector<std::uint32_t> newest_;  // the kept direction that came last to a cell, or kNone
 };
 
 // Groups in the order of the means' polar angles, those within the resolution by azimuth in [0, 2 pi).

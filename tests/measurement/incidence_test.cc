@@ -52,6 +52,26 @@ TEST(GroupByIncidence, AzimuthsOfMinusPiAndPiAreOneDirection) {
   EXPECT_EQ(GroupByIncidence(Lights({{40, 179.99}, {40, -179.99}}, 0, 3)).wi.size(), 1U);
 }
 
+// Every half degree of polar angle and 12 azimuths, up to grazing, jittered: as fine as the smallest resolution allows, so
+// that a grid of cells that repeats itself holds many directions in one.
+TEST(GroupByIncidence, FindsTheLightsOfAHemisphereWhateverTheResolution) {
+  std::vector<std::pair<double, double>> lights;
+  for (int t = 1; t < 180; ++t) {
+    for (int p = 0; p < 12; ++p) lights.emplace_back(0.5 * t, 30 * p);
+  }
+  for (const double resolution_deg : {0.1, 1e-2, 1e-4}) {
+    SCOPED_TRACE(resolution_deg);
+    const Measurement measurement = Lights(lights, resolution_deg / 3, 3);
+    const Incidences incidences = GroupByIncidence(measurement, DegreesToRadians(resolution_deg));
+    ASSERT_EQ(incidences.wi.size(), lights.size());
+    for (std::size_t i = 0; i < measurement.samples.size(); ++i) {
+      ASSERT_EQ(incidences.group[i], incidences.group[i % lights.size()]);
+      const Vec3 off = measurement.samples.wi(i) - incidences.wi[incidences.group[i]];
+      ASSERT_LT(std::sqrt(Dot(off, off)), DegreesToRadians(resolution_deg));
+    }
+  }
+}
+
 TEST(GroupByIncidence, IncidencesOfAFifthOfADegreeStayApart) {
   std::vector<std::pair<double, double>> lights;
   for (int k = 0; k < 40; ++k) lights.emplace_back(10 + 0.2 * k, 30);
