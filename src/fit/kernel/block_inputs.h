@@ -1,4 +1,4 @@
-// What the inner loop reads of a block's samples and of its lobes' kinds. Internal to kernel.cc.
+// What the inner loop reads of a block's samples. Internal to the kernel.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +19,6 @@ inline const double* PaddedArray(const double* from, std::size_t count, std::siz
   copy->resize(padded, pad);
   return copy->data();
 }
-
-// Fresnel factors that are constant + slope * (1 - cos_d)^5.
-inline bool IsLinear(const KernelLobe& lobe) {
-  return lobe.kind.fresnel == Fresnel::kSchlick || lobe.kind.fresnel == Fresnel::kNone;
-}
-// A curve at a point: of a mean the argument moves with the shape.
-inline bool IsCurve(const KernelLobe& lobe) { return lobe.kind.fresnel == Fresnel::kCurve && lobe.mean == nullptr; }
 
 inline bool HasWeights(const KernelSamples& samples) {
   return samples.weight != nullptr || samples.solid_angle != nullptr || samples.sin_i || samples.sin_o;

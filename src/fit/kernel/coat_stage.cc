@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lobefit/core/brdf/coat.h"
-#include "lobefit/fit/kernel/kernel_block.h"
+#include "lobefit/fit/kernel/block_arrays.h"
 
 namespace lobefit {
 namespace {

@@ -1,4 +1,4 @@
-// What the coat of a model makes of the lobes and the diffuse part below it, block by block. Internal to kernel.cc.
+// What the coat of a model makes of the lobes and the diffuse part below it, block by block. Internal to the kernel.
 #pragma once
 
 #include <cstddef>

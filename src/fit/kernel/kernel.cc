@@ -36,7 +36,7 @@ void Accumulate(const KernelSamples& samples, const KernelModel& model, bool gra
       const double* from = block.Columns(c);
       arrays::AddGram(from, columns, block.padded(), kBlock, sums->gram[c].data());
       if (!arrows) continue;
-      block.AddGainProducts(i, c, from, columns, [&](std::uint32_t group) {
+      block.reading().AddGainProducts(c, from, columns, [&](std::uint32_t group) {
         const auto [found, is_new] = place.try_emplace(group, sums->arrows.size());
         if (is_new) sums->arrows.push_back({group, std::vector<double>(model.channels * columns, 0.0)});
         return sums->arrows[found->second].products.data() + c * columns;
@@ -53,10 +53,11 @@ void SumGains(const KernelSamples& samples, const KernelModel& model, std::size_
     block.Evaluate(i, std::min(kBlock, end - i));
     sums->sum_of_squares += block.Residuals(i, &unused);
     for (std::size_t c = 0; c < model.channels; ++c) {
-      block.AddGainProducts(i, c, block.gain_column(c), 1, [&](std::uint32_t g) { return &sums->curvature[g]; });
-      block.AddGainProducts(i, c, block.residual(c), 1, [&](std::uint32_t g) { return &sums->slope[g]; });
+      block.reading().AddGainProducts(c, block.reading().gain_column(c), 1,
+                                      [&](std::uint32_t g) { return &sums->curvature[g]; });
+      block.reading().AddGainProducts(c, block.residual(c), 1, [&](std::uint32_t g) { return &sums->slope[g]; });
       for (std::size_t k = 0; k < block.padded(); ++k) {
-        const double product = block.gain_column(c)[k] * block.residual(c)[k];
+        const double product = block.reading().gain_column(c)[k] * block.residual(c)[k];
         sums->weighted_squares += product * product;
       }
     }
