@@ -126,7 +126,7 @@ Material Fit(const Recipe& wanted, const FitOptions& options, Measurement* measu
   material.wavelengths_nm = measurement->channels.wavelengths_nm;
   material.degenerate = uncertainty.degenerate;
   ReportParameters(layout, best.u, uncertainty, &material);
-  FlagUndeterminedProfiles(problem, layout, best.u, &pool, &material);
+  FlagUndeterminedProfiles(problem, layout, best.u, samples, &pool, &material);
   const bool has_rival = FlagRivals(problem, layout, samples, minima, &pool, &material);
   material.remarks.insert(material.remarks.begin(), remarks.begin(), remarks.end());
   ReportByFile(EstimateErrorsByFile(problem, layout, best.u, incidences, measurement->samples.file, &pool), &material);

@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 #include <fmt/format.h>
 
+#include "lobefit/fit/search/profile_knots.h"
 #include "lobefit/fit/search/solve.h"
 #include "lobefit/math/vec.h"
 
@@ -178,7 +179,7 @@ Eigen::MatrixXd InverseOfBorder(const ArrowMatrix& hessian) {
 }  // namespace
 
 void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, const std::vector<double>& u,
-                              ThreadPool* pool, Material* material) {
+                              const Samples& samples, ThreadPool* pool, Material* material) {
   constexpr double kMostShare = 0.5;
   const std::vector<Coordinate>& coordinates = layout.coordinates();
   if (std::none_of(coordinates.begin(), coordinates.end(), [](const Coordinate& c) { return c.prior > 0; })) return;
@@ -189,9 +190,11 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
   const std::vector<int>& border = hessian.shape.border;  // to which profiles belong
   const Eigen::MatrixXd covariance = square * InverseOfBorder(hessian);
   const std::vector<Parameter> parameters = Parameters(material->model);
+  const KernelModel kernel = layout.ToKernel(u.data());
   for (std::size_t l = 0; l < material->model.lobes.size(); ++l) {
     const Lobe& lobe = material->model.lobes[l];
     if (FamilyOf(lobe.ndf) != Family::kProfile) continue;
+    const double reach = LargestRadius(lobe, kernel.lobes[l].shape.slope, samples);
     const std::size_t first = FirstParameter(material->model, l) + kEllipseParameters;
     for (std::size_t k = 0; first + k < FirstFresnel(material->model, l); ++k) {
       FittedParameter& fitted = material->parameters[first + k];
@@ -199,9 +202,9 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
         const Coordinate& coordinate = coordinates[static_cast<std::size_t>(border[i])];
         if (coordinate.name != parameters[first + k].name) continue;
         const auto at = static_cast<Eigen::Index>(i);
-        if (!(covariance(at, at) * coordinate.prior > kMostShare)) continue;
-        fitted.standard_error = fitted.standard_error_clustered = {kNan};
         const double from = GridOf(lobe)->spline()->FirstRadius(k);
+        if (from <= reach && !(covariance(at, at) * coordinate.prior > kMostShare)) continue;
+        fitted.standard_error = fitted.standard_error_clustered = {kNan};
         material->degenerate.push_back(fmt::format(
             "{}: the density {} {:g} alphas is not determined by these samples; it is held near GGX's",
             parameters[first + k].name, from > 0 ? "beyond" : "from the mean slope on, within", from > 0 ? from : 1.0));

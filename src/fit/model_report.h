@@ -22,9 +22,10 @@ void ReportParameters(const Layout& layout, const std::vector<double>& u, const 
 void ReportByFile(const FileErrors& errors, Material* material);
 
 // Takes the errors from the coefficients of which the prior knows more than the samples (their posterior variance is
-// more than half its own), and names them. After ReportParameters.
+// more than half its own), and from those that begin beyond the half vectors of `samples`, which act through the
+// normalisation and the masking alone; names them. After ReportParameters.
 void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, const std::vector<double>& u,
-                              ThreadPool* pool, Material* material);
+                              const Samples& samples, ThreadPool* pool, Material* material);
 
 // Whether all is determined but coefficients of a free Fresnel curve: at angles that were not measured they change
 // nothing that was; they are named, and the rest is determined without them.
