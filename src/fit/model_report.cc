@@ -205,9 +205,13 @@ void FlagUndeterminedProfiles(const Problem& problem, const Layout& layout, cons
         const double from = GridOf(lobe)->spline()->FirstRadius(k);
         if (from <= reach && !(covariance(at, at) * coordinate.prior > kMostShare)) continue;
         fitted.standard_error = fitted.standard_error_clustered = {kNan};
+        const double value = fitted.values[0];
+        const std::string stands = std::fabs(value) * std::sqrt(coordinate.prior) <= 1
+                                       ? "it is held near GGX's"
+                                       : fmt::format("its value of {:.3g}, far from GGX's 0, tells nothing", value);
         material->degenerate.push_back(fmt::format(
-            "{}: the density {} {:g} alphas is not determined by these samples; it is held near GGX's",
-            parameters[first + k].name, from > 0 ? "beyond" : "from the mean slope on, within", from > 0 ? from : 1.0));
+            "{}: the density {} {:g} alphas is not determined by these samples; {}", parameters[first + k].name,
+            from > 0 ? "beyond" : "from the mean slope on, within", from > 0 ? from : 1.0, stands));
       }
     }
   }
