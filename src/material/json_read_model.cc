@@ -92,25 +92,21 @@ SelTable ReadSel(const JsonReader& reader, std::size_t channels) {
 
 namespace {
 
-// Values that a model can be evaluated at: wider than the bounds of a fit where a recipe may widen them or where slope
-// coordinates go beyond them.
+// Values that a model can be evaluated at: widths wider and narrower than the bounds of a fit, as slope coordinates have
+// them, and reflectances that a recipe let go beyond 1.
 void CheckRange(const JsonReader& reader, const Parameter& parameter, double value) {
-  constexpr double kWidest = 10;  // of the slope coordinates
+  constexpr double kNarrowest = 1e-10, kWidest = 10;
   const bool is_shape = parameter.group == ParameterGroup::kShape;
   const bool is_width = is_shape && parameter.name.find("alpha") != std::string::npos;
-  if (!std::isfinite(value)) reader.Fail(fmt::format("parameter '{}' has no finite value", parameter.json_name));
+  const double slack = is_width ? 0 : parameter.unit == "deg" ? 1e-9 : 1e-12;  // rounding, of degrees too
+  const double low = is_width ? kNarrowest : parameter.low;
+  double high = parameter.high;
+  if (is_width) high = std::max(kWidest, parameter.high);
+  if (parameter.is_reflectance) high = kLargestReflectance;
+  if (value >= low - slack && value <= high + slack) return;
   const double factor = InsideFactor(parameter);
-  const double slack = parameter.unit == "deg" ? 1e-9 : 0;  // rounding of degrees
-  if (is_width && !(value > 0 && value <= std::max(kWidest, parameter.high))) {
-    reader.Fail(fmt::format("parameter '{}' is {:g}; it must be above 0 and at most {:g}", parameter.json_name, value,
-                            std::max(kWidest, parameter.high)));
-  }
-  if (is_shape && !is_width && !(value >= parameter.low - slack && value <= parameter.high + slack)) {
-    reader.Fail(fmt::format("parameter '{}' is {:g}; it must lie in [{:g}, {:g}]", parameter.json_name, value / factor,
-                            parameter.low / factor, parameter.high / factor));
-  }
-  if (!is_shape && value < 0)
-    reader.Fail(fmt::format("parameter '{}' is {:g}; it must not be below 0", parameter.json_name, value));
+  reader.Fail(fmt::format("parameter '{}' is {:g}; it must lie in [{:g}, {:g}]", parameter.json_name, value / factor,
+                          low / factor, high / factor));
 }
 
 }  // namespace
@@ -137,18 +133,13 @@ void ReadParameters(const JsonReader& reader, Material* material) {
       reader.Fail(fmt::format("parameter '{}' has {} values, {} belong there", parameter.json_name,
                               fitted.values.size(), expected));
     }
-    for (const double value : fitted.values) {
-      CheckRange(reader, parameter, value);
-    }
+    for (const double value : fitted.values) CheckRange(reader, parameter, value);
     material->parameters.push_back(fitted);
   }
   const std::size_t coat = CoatOf(material->model);
   if (coat == material->model.lobes.size()) return;
-  constexpr double kMostIndex = 1000;  // beyond any medium; far beyond, nothing enters and the rest divides by that
   const std::vector<double>& ior = material->parameters[FirstFresnel(material->model, coat)].values;
   for (const double value : ior) {
-    if (!(value >= 1 && value <= kMostIndex))
-      reader.Fail(fmt::format("the coat's ior is {:g}; it must lie in [1, {:g}]", value, kMostIndex));
     if (value != ior[0]) reader.Fail("the coat's ior differs from channel to channel; it is one for all");
   }
 }

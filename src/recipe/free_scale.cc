@@ -8,19 +8,14 @@ namespace {
 // Light that is scattered more than once makes a diffuse part no multiple of its albedo, which stays at most 1.
 bool IsLinear(Diffuse diffuse) { return diffuse != Diffuse::kInterfaced && diffuse != Diffuse::kOrenNayar; }
 
-bool IsReflectance(const Model& model, const Parameter& parameter) {
-  if (parameter.group == ParameterGroup::kDiffuse && !IsLinear(model.diffuse)) return false;
-  return parameter.group != ParameterGroup::kShape && parameter.free && parameter.low == 0 && !parameter.shared;
-}
-
 }  // namespace
 
 void LiftReflectanceBounds(Recipe* recipe) {
   const std::vector<Parameter> parameters = Parameters(recipe->model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (!IsReflectance(recipe->model, parameters[i])) continue;
+    if (!parameters[i].is_reflectance) continue;
     recipe->parameters[i].low = 0;
-    recipe->parameters[i].high = 1e12;
+    recipe->parameters[i].high = kLargestReflectance;
   }
 }
 
@@ -46,7 +41,7 @@ Recipe WithFreeScale(const Recipe& recipe) {
     for (std::size_t k = 0; k < before.size(); ++k) {
       if (before[k].name == after[i].name && k < recipe.parameters.size()) free.parameters[i] = recipe.parameters[k];
     }
-    if (IsReflectance(free.model, after[i])) free.parameters[i].fixed.clear();
+    if (after[i].is_reflectance) free.parameters[i].fixed.clear();
   }
   LiftReflectanceBounds(&free);
   free.free_scale = true;

@@ -143,6 +143,11 @@ Recipe ParseRecipe(const std::string& toml_text, const std::string& file_name) {
     recipe.theta_max = DegreesToRadians(*limit);
   }
   recipe.wavelengths_nm = NumberList(root, "wavelengths_nm", true, 1, place);
+  for (const double wavelength : recipe.wavelengths_nm) {
+    if (wavelength <= 0)
+      place.Fail(root.get("wavelengths_nm")->source(),
+                 fmt::format("a wavelength of {:g} nm; it must be above 0", wavelength));
+  }
   if (const toml::table* table = TableOf(root, "parameters", place)) {
     const std::vector<Parameter> parameters = Parameters(recipe.model);
     const std::size_t coat = CoatOf(recipe.model);

@@ -34,10 +34,10 @@ ParameterRecipe ReadParameter(const toml::node& node, const Parameter& parameter
       place.Fail(bounds->source(), fmt::format("bounds of '{}' must be finite numbers", name));
     if (!(*recipe.low < *recipe.high))
       place.Fail(bounds->source(), fmt::format("bounds of '{}': the first must be below the second", name));
-    const bool wider = parameter.group == ParameterGroup::kShape && *recipe.high > parameter.high + 1e-12;
-    if (*recipe.low < parameter.low - 1e-12 || wider) {
+    const double highest = parameter.is_reflectance ? kLargestReflectance : parameter.high;
+    if (*recipe.low < parameter.low - 1e-12 || *recipe.high > highest + 1e-12) {
       place.Fail(bounds->source(), fmt::format("bounds of '{}' leave its range [{:g}, {:g}]", name,
-                                               parameter.low / factor, parameter.high / factor));
+                                               parameter.low / factor, highest / factor));
     }
   }
   if (const toml::node* shared = table.get("shared")) {

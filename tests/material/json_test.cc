@@ -131,6 +131,85 @@ TEST(MaterialJson, RefusesWhatIsNotAMaterial) {
   }
 }
 
+// A document of a model whose parameters have these values in one channel.
+nlohmann::json DocumentOf(const Model& model, const ParameterValues& values) {
+  Material material;
+  material.model = model;
+  material.channels = {"value"};
+  for (const std::vector<double>& value : values)
+    material.parameters.push_back({value, value, value, value, {}, true, false});
+  return nlohmann::json::parse(ToJson(material));
+}
+
+// What no fit of the model can end with, and what one can.
+TEST(MaterialJson, ChecksValuesAgainstTheTableOfParameters) {
+  const Lobe ggx = {Ndf::kGgx};
+  const auto lobe = [](Ndf ndf, Fresnel fresnel) { return Lobe{ndf, Masking::kSmithSeparable, fresnel}; };
+  const ParameterValues round = {{0.2}, {0.2}, {0}, {0}, {0}};
+  const auto with = [&](const ParameterValues& more) {
+    ParameterValues values = round;
+    values.insert(values.end(), more.begin(), more.end());
+    return values;
+  };
+  const Model f82 = {{lobe(Ndf::kGgx, Fresnel::kSchlickF82)}, Diffuse::kLambert},
+              conductor = {{lobe(Ndf::kGgx, Fresnel::kConductor)}, Diffuse::kLambert},
+              dielectric = {{lobe(Ndf::kGgx, Fresnel::kDielectric)}, Diffuse::kLambert},
+              curve = {{lobe(Ndf::kGgx, Fresnel::kCurve)}, Diffuse::kLambert},
+              student = {{lobe(Ndf::kStudent, Fresnel::kSchlick)}, Diffuse::kLambert},
+              oren_nayar = {{ggx}, Diffuse::kOrenNayar},
+              coated = {{lobe(Ndf::kGgx, Fresnel::kCoatLayered)}, Diffuse::kLambert};
+  const ParameterValues of_f82 = with({{0.5}, {0.9}, {0.1}}), of_conductor = with({{0.4}, {3}, {0.1}}),
+                        of_dielectric = with({{1.5}, {0.1}}),
+                        of_curve = with({{0.9}, {0.5}, {0.2}, {0.1}, {0.1}, {0.1}, {0.1}}),
+                        of_student = with({{2.5}, {0.5}, {0.1}}), of_oren_nayar = with({{0.5}, {0.3}, {0.1}}),
+                        of_coated = with({{1.5}, {0}, {0.1}});
+  const struct {
+    const Model& model;
+    const ParameterValues& values;
+    const char* name;
+    std::vector<double> refused, read;
+    const char* range;
+  } cases[] = {
+      {f82, of_f82, "alpha_x", {0, -0.2, 1e-11, 11}, {1e-9, 1.5}, "[1e-10, 10]"},
+      {f82, of_f82, "theta_y_deg", {-91, 91}, {-90, 90}, "[-90, 90]"},
+      {f82, of_f82, "f0", {-0.1, 2e12}, {0, 5}, "[0, 1e+12]"},
+      {f82, of_f82, "tint", {-0.1, 1.3, 1e300}, {0, 1.2}, "[0, 1.2]"},
+      {f82, of_f82, "diffuse", {-0.1, 1e300}, {0, 3}, "[0, 1e+12]"},
+      {conductor, of_conductor, "eta", {0, 31}, {0.05}, "[0.01, 30]"},
+      {conductor, of_conductor, "k", {0, 101}, {90}, "[0.001, 100]"},
+      {dielectric, of_dielectric, "ior", {0.9, 6}, {1, 4}, "[1, 5]"},
+      {curve, of_curve, "F_3", {-1e-3, 1e300}, {0, 2}, "[0, 1e+12]"},
+      {student, of_student, "gamma", {1.5, 101}, {1.55, 100}, "[1.55, 100]"},
+      {oren_nayar, of_oren_nayar, "diffuse_roughness", {-0.1, 1.1}, {0, 1}, "[0, 1]"},
+      {oren_nayar, of_oren_nayar, "diffuse", {-0.1, 1.1}, {0, 1}, "[0, 1]"},
+      {coated, of_coated, "ior", {0.9, 3.5}, {1, 3}, "[1, 3]"},
+      {coated, of_coated, "tau", {-0.1, 11}, {2}, "[0, 10]"},
+  };
+  for (const auto& test : cases) {
+    SCOPED_TRACE(test.name);
+    nlohmann::json json = DocumentOf(test.model, test.values);
+    ASSERT_TRUE(json["parameters"].contains(test.name));
+    nlohmann::json& value = json["parameters"][test.name]["value"];
+    const nlohmann::json good = value;
+    const auto put = [&](double number) { value = good.is_array() ? nlohmann::json{number} : nlohmann::json(number); };
+    for (const double number : test.refused) {
+      put(number);
+      try {
+        MaterialFromJson(json.dump(), "m.json");
+        ADD_FAILURE() << number << " was read";
+      } catch (const InputError& error) {
+        const std::string what = error.what();
+        EXPECT_NE(what.find(std::string("m.json: parameter '") + test.name), what.npos) << what;
+        EXPECT_NE(what.find(test.range), what.npos) << what;
+      }
+    }
+    for (const double number : test.read) {
+      put(number);
+      EXPECT_NO_THROW(MaterialFromJson(json.dump(), "m.json")) << number;
+    }
+  }
+}
+
 TEST(MaterialJson, ReadsTheInstrumentBackAndChecksIt) {
   Material material = FittedMaterial();
   InstrumentUsed instrument;

@@ -251,6 +251,82 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"theta_max_deg = 95\n[[lobe]]\n", "r.toml:1: theta_max_deg must lie in (0, 90]"},
         BadCase{"name = \"x\"\n", "r.toml:1: a recipe needs at least one [[lobe]], or [sel]"}));
 
+// Of parameters, knots, losses, tables of lobes and instruments.
+INSTANTIATE_TEST_SUITE_P(
+    Parts, BadRecipe,
+    testing::Values(
+        BadCase{
+            "[[lobe]]\n[parameters]\nalpha_x = 0.2\n",
+            "r.toml:3: 'alpha_x' must be a table such as { start = 0.2 }; keys: start, fixed, bounds, shared, free"},
+        BadCase{"[[lobe]]\n[parameters]\nalpha_x = { bounds = [0.1] }\n",
+                "r.toml:3: bounds of 'alpha_x' must be two numbers, [low, high]"},
+        BadCase{"[[lobe]]\n[parameters]\nalpha_x = { bounds = [0.1, inf] }\n",
+                "r.toml:3: bounds of 'alpha_x' must be finite numbers"},
+        BadCase{"[[lobe]]\n[parameters]\nalpha_x = { bounds = [-1, 0.5] }\n",
+                "r.toml:3: bounds of 'alpha_x' leave its range [0.0001, 1]"},
+        BadCase{"[[lobe]]\n[parameters]\nalpha_x = { shared = true }\n",
+                "r.toml:3: 'alpha_x' has one value for all channels anyway"},
+        BadCase{"[[lobe]]\n[parameters]\nf0 = { shared = 1 }\n", "r.toml:3: 'shared' must be true or false"},
+        BadCase{"[[lobe]]\n[parameters]\nf0 = { start = [] }\n", "r.toml:3: 'start' is an empty list"},
+        BadCase{"[[lobe]]\n[parameters]\nf0 = { start = [0.1, \"x\"] }\n",
+                "r.toml:3: 'start' must be a finite number or a list of them, one a channel"},
+        BadCase{"[[lobe]]\n[parameters]\nalpha_x = { start = [0.1, 0.2] }\n",
+                "r.toml:3: 'start' must be a finite number"},
+        BadCase{"[[lobe]]\n[parameters]\nf0 = { fixed = 0.1, start = 0.2 }\n",
+                "r.toml:3: 'f0' is fixed: start and bounds do not apply"},
+        BadCase{"[[lobe]]\n[parameters]\nf0 = { free = false }\n",
+                "r.toml:3: 'free' of 'f0' must be true; { fixed = ... } fixes it"},
+        BadCase{"parameters = 3\n[[lobe]]\n", "r.toml:1: 'parameters' must be a table"},
+        BadCase{"name = 3\n[[lobe]]\n", "r.toml:1: 'name' must be a string"},
+        BadCase{"lobe = 3\n", "r.toml:1: lobes are written as [[lobe]], at most three"},
+        BadCase{"[[lobe]]\n[[lobe]]\n[[lobe]]\n[[lobe]]\n", "r.toml:1: lobes are written as [[lobe]], at most three"},
+        BadCase{"[[lobe]]\nndf = \"profile\"\nknots = [0, 2, 1]\n",
+                "r.toml:3: the knots of a profile (0, 2, 1) must increase, begin with 0 and contain 1, at most 20, "
+                "such as 0, 1, 2, 4, 8"},
+        BadCase{"[[lobe]]\nndf = \"profile\"\nknots = 4\n",
+                "r.toml:3: the knots of a profile (4) must increase, begin with 0 and contain 1, at most 20, such as "
+                "0, 1, 2, 4, 8"},
+        BadCase{"[[lobe]]\nndf = \"ggx\"\nknots = [0, 1, 2]\n",
+                "r.toml:1: knots go with a profile only, not with ndf ggx"},
+        BadCase{"[[lobe]]\nndf = \"profile\"\nknots=[0,1,2,4]\n[parameters]\nq3 = { start = -0.6 }\n",
+                "r.toml:5: 'q3' = -0.6 lies outside its bounds [-0.45, 40]"},
+        BadCase{"[[lobe]]\nndf = \"student\"\n[parameters]\ngamma = { start = 1.0 }\n",
+                "r.toml:4: 'gamma' = 1 lies outside its bounds [1.55, 100]"},
+        BadCase{"[loss]\nkind = \"cauchy\"\nscale = 0\n[[lobe]]\n", "r.toml:1: the scale of the loss must be above 0"},
+        BadCase{"loss = \"cauchy\"\n[[lobe]]\n", "r.toml:1: 'loss' must be a table"},
+        BadCase{"[sel]\nlobes = 4\n", "r.toml:2: lobes = 4: allowed are 1, 2 and 3"},
+        BadCase{"[sel]\nlobes = 2\n[[lobe]]\n",
+                "r.toml:3: unknown key 'lobe' of a recipe with [sel]; allowed: name, metric, weighting, theta_max_deg, "
+                "sel"},
+        BadCase{"[sel]\ndrift = -1\n", "r.toml:2: 'drift' must be above 0"},
+        BadCase{"scale = \"loose\"\n[[lobe]]\n", "r.toml:1: scale = 'loose' is unknown; allowed: calibrated, free"},
+        BadCase{"scale = \"free\"\nenergy = \"conserving\"\n[[lobe]]\n",
+                "r.toml:1: values without a scale have no albedo that energy = \"conserving\" could limit"},
+        BadCase{"wavelengths_nm = []\n[[lobe]]\n", "r.toml:1: 'wavelengths_nm' is an empty list"},
+        BadCase{"wavelengths_nm = [550, -1, 3]\n[[lobe]]\n", "r.toml:1: a wavelength of -1 nm; it must be above 0"},
+        BadCase{
+            "[instrument]\nnoise = { floor = 0.1 }\n[[lobe]]\n",
+            "r.toml:2: noise is written as { floor = 0.002, relative = 0.03, poisson = 0.0001 }: of f_r cos(theta_i) "
+            "the floor and the value of one count, in 1/sr, one of them above 0, and the relative part in (0, 1]"},
+        BadCase{"[instrument]\ndrift = 0\n[[lobe]]\n",
+                "r.toml:2: drift is \"auto\" or the relative standard deviation of a gain, in (0, 1]"},
+        BadCase{"[instrument]\ndetector = { value = 0, prior_deg = 0.1 }\n[[lobe]]\n",
+                "r.toml:2: detector is a point (value = 0), which is neither fitted nor a rectangle; give a half angle "
+                "above 0, or leave the rest out"},
+        BadCase{"[instrument]\ndetector = 90\n[[lobe]]\n",
+                "r.toml:2: detector = 90: the half angle of a disc, in degrees, must lie in [0, 30]"},
+        BadCase{"[instrument]\noffset = 1\n[[lobe]]\n", "r.toml:2: 'offset' must be true or false"},
+        BadCase{"[[lobe]]\ndirection = \"sideways\"\n",
+                "r.toml:2: direction = 'sideways' is unknown; allowed: specular, retro"},
+        BadCase{"[[lobe]]\ndirection = \"retro\"\nfresnel = \"coat-layered\"\n[[lobe]]\n",
+                "r.toml:1: direction retro needs a lobe about the normal, ellipsoid may tilt, and would not be "
+                "reciprocal; use ndf ggx, ggx-anisotropic or one of the others without a tilt"},
+        BadCase{"[[lobe]]\nfresnel=\"coat-layered\"\n[[lobe]]\nfresnel=\"coat-layered\"\n",
+                "r.toml:1: a model has one coat at most"},
+        BadCase{"diffuse = \"microfacet\"\n[[lobe]]\nndf = \"profile\"\n",
+                "r.toml:2: diffuse microfacet needs a first lobe of GGX or Beckmann facets, not profile"},
+        BadCase{"", "r.toml:1: a recipe needs at least one [[lobe]], or [sel]"}));
+
 TEST(AutomaticRecipe, TakesWhatTheMeasurementDetermines) {
   EXPECT_EQ(AutomaticRecipe({.isotropic = true}).model.lobes[0].ndf, Ndf::kGgx);
   const Recipe in_plane = AutomaticRecipe({.in_plane = true, .plane_azimuth = 0.5});

@@ -91,37 +91,37 @@ struct FresnelRow {
   const char* name;
   double low, high, start;
   const char* description;
-  bool free = true, shared = false;
+  bool is_reflectance = false, free = true, shared = false;
 };
 // Indices beyond the ranges are not known of any metal between 0.3 and 12 um, or of any transparent solid.
 std::vector<FresnelRow> FresnelRows(Fresnel fresnel) {
   switch (fresnel) {
     case Fresnel::kSchlick:
-      return {{"f0", 0, 1, 0, "reflectance at normal incidence"}};
+      return {{"f0", 0, 1, 0, "reflectance at normal incidence", true}};
     case Fresnel::kConductor:
       return {{"eta", 0.01, 30, 1, "real part of the refractive index"},
               {"k", 0.001, 100, 3, "imaginary part of the refractive index"}};
     case Fresnel::kDielectric:
       return {{"ior", 1, 5, 1.5, "refractive index"}};
     case Fresnel::kSchlickF82:
-      return {{"f0", 0, 1, 0, "reflectance at normal incidence"},
+      return {{"f0", 0, 1, 0, "reflectance at normal incidence", true},
               {"tint", 0, 1.2, 1, "factor of Schlick's reflectance at 82 degrees"}};
     case Fresnel::kCurve:
-      return {{"F_0", 0, 1, 1, "reflectance at grazing incidence"},
-              {"F_1", 0, 1, 0.5, "coefficient of the reflectance, weightiest near 83 degrees"},
-              {"F_2", 0, 1, 0.1, "near 73 degrees"},
-              {"F_3", 0, 1, 0, "near 58 degrees"},
-              {"F_4", 0, 1, 0, "near 30 degrees"},
-              {"F_5", 0, 1, 0, "reflectance at normal incidence"}};
+      return {{"F_0", 0, 1, 1, "reflectance at grazing incidence", true},
+              {"F_1", 0, 1, 0.5, "coefficient of the reflectance, weightiest near 83 degrees", true},
+              {"F_2", 0, 1, 0.1, "near 73 degrees", true},
+              {"F_3", 0, 1, 0, "near 58 degrees", true},
+              {"F_4", 0, 1, 0, "near 30 degrees", true},
+              {"F_5", 0, 1, 0, "reflectance at normal incidence", true}};
     case Fresnel::kCoatLayered:
     case Fresnel::kCoatRefracted:
       // The absorption is not free: without samples at grazing it is the reflectance of what lies below over again.
-      return {{"ior", 1, 3, 1.5, "refractive index of the coat", true, true},
-              {"tau", 0, 10, 0, "optical depth of the coat along the normal, one way", false, false}};
+      return {{"ior", 1, 3, 1.5, "refractive index of the coat", false, true, true},
+              {"tau", 0, 10, 0, "optical depth of the coat along the normal, one way", false, false, false}};
     case Fresnel::kNone:
       break;
   }
-  return {{"scale", 0, 1e6, 0, "factor of the lobe in place of a Fresnel term"}};
+  return {{"scale", 0, 1e6, 0, "factor of the lobe in place of a Fresnel term", true}};
 }
 
 const char* DiffuseAlbedoText(Diffuse diffuse) {
@@ -289,7 +289,8 @@ std::vector<Parameter> Parameters(const Model& model) {
     for (const FresnelRow& row : FresnelRows(lobe.fresnel)) {
       const std::string name = prefix + row.name;
       parameters.push_back({name, name, "1", row.low, row.high, ParameterGroup::kFresnel, true,
-                            row.free && lobe.metal.empty(), row.description, row.start, row.shared});
+                            row.free && lobe.metal.empty(), row.description, row.start, row.shared,
+                            row.is_reflectance});
     }
   }
   if (model.diffuse == Diffuse::kInterfaced) {
@@ -302,8 +303,10 @@ std::vector<Parameter> Parameters(const Model& model) {
                           "roughness of the diffuse part", 0.3, true});
   }
   if (model.diffuse != Diffuse::kNone) {
-    parameters.push_back(
-        {"diffuse", "diffuse", "1", 0, 1, ParameterGroup::kDiffuse, true, true, DiffuseAlbedoText(model.diffuse)});
+    // Light that is scattered more than once makes a diffuse part no multiple of its albedo, which stays at most 1.
+    const bool is_linear = model.diffuse != Diffuse::kInterfaced && model.diffuse != Diffuse::kOrenNayar;
+    parameters.push_back({"diffuse", "diffuse", "1", 0, 1, ParameterGroup::kDiffuse, true, true,
+                          DiffuseAlbedoText(model.diffuse), 0, false, is_linear});
   }
   return parameters;
 }

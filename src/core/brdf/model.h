@@ -103,8 +103,8 @@ struct Parameter {
   std::string name;       // inside, angles in radians: "theta_x"; the second lobe's are prefixed: "lobe2.theta_x"
   std::string json_name;  // outside, angles in degrees: "theta_x_deg"
   std::string unit;       // of the outside value: "deg", "1" for none
-  // Bounds of a fit unless a recipe says otherwise, inside units. A recipe may narrow them; those of amplitudes and
-  // albedos, which say that no surface reflects more than it receives, it may widen too (values that are not
+  // Bounds of a fit unless a recipe says otherwise, inside units. A recipe may narrow them; the upper one of amplitudes
+  // and albedos, which says that no surface reflects more than it receives, it may widen too (values that are not
   // calibrated).
   double low = 0;
   double high = 0;
@@ -114,7 +114,11 @@ struct Parameter {
   std::string description;  // one line for people
   double start = 0;         // where a fit begins that knows nothing better
   bool shared = false;      // per_channel, but one value for all channels unless a recipe says otherwise
+  // A factor of what is reflected, of which the values are a multiple: in arbitrary units it may be up to
+  // kLargestReflectance.
+  bool is_reflectance = false;
 };
+inline constexpr double kLargestReflectance = 1e12;
 
 // The parameters in their fixed order: for each lobe alpha_x, alpha_y, theta_x, theta_y, theta_z and those of its
 // profile (gamma; g; or q1 .. qK), then those of its Fresnel term (f0; f0, tint; F_0 .. F_5; eta, k; ior; ior, tau; or
