@@ -99,6 +99,11 @@ TEST(Plausibility, MarksAndSaturation) {
   EXPECT_TRUE(Says(Hemisphere(shaded), "--exclude retro:"));
   const auto marked = [](const Vec3& wi, const Vec3& wo) { return wo.z > 0.99 ? -999.0 : Lobe(wi, wo); };
   EXPECT_TRUE(Says(Hemisphere(marked), "--no-value -999"));
+  const auto filled = [](const Vec3& wi, const Vec3& wo) { return wo.z > 0.99 ? -88.5 : Lobe(wi, wo); };
+  EXPECT_TRUE(Says(Hemisphere(filled), "--no-value -88.5"));
+  // A detector's least step below its zero is noise.
+  const auto stepped = [](const Vec3& wi, const Vec3& wo) { return wo.z < 0.4 ? -0.01 : Lobe(wi, wo); };
+  EXPECT_FALSE(Says(Hemisphere(stepped), "--no-value"));
   const auto saturated = [](const Vec3& wi, const Vec3& wo) { return std::min(0.8, Lobe(wi, wo) + 1e-3 * wo.x); };
   EXPECT_TRUE(Says(Hemisphere(saturated), "share the largest value, 0.8"));
 }
