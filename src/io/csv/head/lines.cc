@@ -32,6 +32,11 @@ std::string_view CommentText(std::string_view line) {
   return Trim(line);
 }
 
+std::string_view WithoutEmptyCells(std::string_view text, char separator) {
+  while (separator != kBlankSeparator && text.ends_with(separator)) text = Trim(text.substr(0, text.size() - 1));
+  return text;
+}
+
 std::string_view PlainComment(std::string_view comment) {
   return comment.starts_with(kCommentKey) ? comment.substr(kCommentKey.size()) : comment;
 }
