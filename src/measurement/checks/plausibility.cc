@@ -282,7 +282,9 @@ class Checks {
                                               " degrees of the light's own direction, which a detector shades"
                                         : "") +
                          ": if that stands for no value, use --no-value 0" +
-                         (degrees <= 25 ? " or --exclude retro:" + Short(degrees) : ""));
+                         (degrees <= 25 ? " or --exclude retro:" + Short(degrees)
+                                        : "; if negative readings were set to 0, give them as they were read, for "
+                                          "without them dim values come out too bright"));
     }
     for (const auto& [value, times] : marks) {
       remarks_.push_back(Count(times, "value") + (times == 1 ? " is " : " are ") + FormatDouble(value) +
