@@ -84,6 +84,11 @@ TEST(CsvKeys, UnitsOfColumnsStatedAboveThem) {
             std::string::npos);
 }
 
+TEST(CsvKeys, PartsOfASentenceAreNoKeyInCells) {
+  EXPECT_NE(MessageOf("# AOI 30 deg, repeated at AOI 50 deg\ntheta_o,brdf\n10,1\n20,2\n").find("theta_i"),
+            std::string::npos);
+}
+
 // Saved by a spreadsheet, which fills each line up to the number of columns.
 TEST(CsvKeys, MayBeFollowedByEmptyCells) {
   for (const char* text : {"# angle-unit: rad,,,\n# columns: theta_o=x,,,\ntheta_i,x,dphi,brdf\n0.5,0.7,0,1\n",

@@ -298,5 +298,24 @@ TEST(CsvLayouts, PivotTables) {
   EXPECT_NE(MessageOf(",10,30\ntheta_o,,\n20,1,3\n40,2,4\n").find("theta_i"), std::string::npos);
 }
 
+TEST(CsvLayouts, ATableOfAzimuthsForEachIncidence) {
+  const std::string names = "theta_o\\phi_o,0,90\n";
+  const Measurement m = ReadText("theta_i = 10\n" + names + "20,1,2\n40,3,4\n\ntheta_i = 30\n" + names + "20,5,6\n");
+  ASSERT_EQ(m.samples.size(), 6U);
+  ExpectSample(m, 1, 10, 0, 20, 90, 2);
+  ExpectSample(m, 5, 30, 0, 20, 90, 6);
+}
+
+TEST(CsvLayouts, WhereAnAzimuthCountsFromInItsName) {
+  const Measurement mirror = ReadText("theta_i,theta_o,relative azimuth (0 = specular),brdf\n30,20,0,1\n30,40,90,2\n");
+  ASSERT_EQ(mirror.samples.size(), 2U);
+  EXPECT_GT(Dot(mirror.samples.wo(0), Reflect(mirror.samples.wi(0), {0, 0, 1})), std::cos(DegreesToRadians(11)));
+  const Measurement light = ReadText("theta_i,theta_o,relative azimuth (180 = specular),brdf\n30,20,0,1\n30,40,90,2\n");
+  ASSERT_EQ(light.samples.size(), 2U);
+  EXPECT_GT(Dot(light.samples.wo(0), light.samples.wi(0)), std::cos(DegreesToRadians(11)));
+  EXPECT_NE(MessageOf("theta_i,theta_o,relative azimuth (nominal),brdf\n30,20,0,1\n").find("speaks of an angle"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace lobefit

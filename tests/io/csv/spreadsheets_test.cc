@@ -298,5 +298,21 @@ TEST(Spreadsheets, MarksAroundTheText) {
   ExpectTheRows(m);
 }
 
+TEST(Spreadsheets, ALineOfNumbersAboveTheNames) {
+  const std::string rows = "theta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\n50,60,70,80,0.25\n";
+  ExpectTheRows(ReadText("Min,Max,Mean\n0.25,0.5,0.375\n\n" + rows));
+  // More of them are rows whose names are missing.
+  EXPECT_NE(MessageOf("1,2,3\n4,5,6\n7,8,9\n" + rows).find("no line names the columns"), std::string::npos);
+}
+
+TEST(Spreadsheets, NumbersWrittenForPeople) {
+  for (const char* row : {"=\"30\",=\"40\",=\"0.25\"", "'30,'40,'0.25", "30,40,2.5x10^-1",
+                          "30,40,2.5\u00b710\u207b\u00b9", "30,40,2.5 \u00d7 10^-1"}) {
+    const Measurement m = ReadText("theta_i,theta_o,brdf\n10,20,0.5\n" + std::string(row) + "\n");
+    ASSERT_EQ(m.samples.size(), 2U) << row;
+    ExpectSample(m, 1, 30, 0, 40, 180, 0.25);
+  }
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -7,6 +7,7 @@
 
 #include "lobefit/base/text/csv_fields.h"
 #include "lobefit/base/text/text.h"
+#include "lobefit/io/csv/head/conventions.h"
 #include "lobefit/io/csv/head/head_lines.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/no_value.h"
@@ -51,6 +52,7 @@ class HeaderReader {
     if (IsComment(header_.names)) std::erase(header_.comments, std::string(CommentText(header_.names)));
     mapping_.Fix(file_, header_.names_line, header_.columns, &header_.keys);
     if (mapping_.head()) header_.head_coordinate = mapping_.head();
+    TakeConventionsOfNames(header_.names_line, &header_.columns, &header_.keys);
     TakeUnits();
     TakeRows();
     header_.written_columns = header_.columns.size();
@@ -326,13 +328,16 @@ class HeaderReader {
                          [](const CsvColumn& column) { return column.role == ColumnRole::kCoordinate; });
   }
 
-  // "Samples 861 861 861" of an instrument's head is no row, where names and rows stand below it.
+  // "Samples 861 861 861" of an instrument's head is no row, nor is a line or two of numbers ("Min,Max,Mean" above them),
+  // where names and rows stand below.
   bool FindNamesBelow() {
+    constexpr std::size_t kMostNumbers = 2;
+    std::size_t numbers = 0;
     for (std::size_t i = data_; i + 1 < lines_.size(); ++i) {
       if (lines_[i].comment) continue;
       const Fields fields = SplitFields(lines_[i].text, header_.separator);
       if (IsData(fields)) {
-        if (IsNumeric(fields[0])) return false;
+        if (IsNumeric(fields[0]) && ++numbers > kMostNumbers) return false;
         continue;
       }
       if (!TryNames(i) || CountDirections(header_.columns) < 2) continue;
@@ -418,8 +423,14 @@ class HeaderReader {
   bool IsKeyInCells(std::size_t line, std::string_view text) {
     if (header_.separator == kBlankSeparator || text.find_first_of(":=") != std::string_view::npos) return false;
     const Fields fields = SplitFields(text, header_.separator);
+    // A key has no number, and its value no blank: others are parts of a sentence.
     std::size_t filled = 0;
-    for (const std::string_view field : fields) filled += Trim(field).empty() ? 0 : 1;
+    for (const std::string_view field : fields) {
+      const std::string_view word = Trim(field);
+      if (word.empty()) continue;
+      if (word.find_first_of(filled == 0 ? "0123456789" : " ") != std::string_view::npos) return false;
+      ++filled;
+    }
     return (filled == 2 || filled == 3) && ReadKey(file_, line, fields, &header_.keys);
   }
 

@@ -89,6 +89,7 @@ constexpr auto kValues = std::to_array<ValueName>({
     {"brf", ValueKind::kReflectanceFactor},
     {"hdrf", ValueKind::kReflectanceFactor},
     {"reflectance_factor", ValueKind::kReflectanceFactor},
+    {"refl_factor", ValueKind::kReflectanceFactor},
     {"bidirectional_reflectance_factor", ValueKind::kReflectanceFactor},
     {"radiance_factor", ValueKind::kReflectanceFactor},
     {"radiance_coefficient", ValueKind::kReflectanceFactor},
@@ -286,7 +287,7 @@ bool ClassifyValue(const NameWords& name, CsvColumn* column) {
     column->role = ColumnRole::kValue;
     column->value_kind = ValueKind::kReflectanceCosI;
   } else if (joined == "reflectance" || joined == "reflectivity" || joined == "refl" || joined == "reflexion" ||
-             joined == "reflectances" || joined == "bdr" || joined == "refl_factor" ||
+             joined == "reflectances" || joined == "bdr" ||
              (joined == "scatter" && !ParseAngleUnit(name.unit)) || joined == "brdf_cos" || joined == "bsdf_cos" ||
              joined == "f_cos" || joined == "fr_cos" || joined == "cos_brdf" || joined == "cosine_brdf" ||
              joined == "cosine_weighted_brdf") {
