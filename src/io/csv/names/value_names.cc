@@ -287,10 +287,9 @@ bool ClassifyValue(const NameWords& name, CsvColumn* column) {
     column->role = ColumnRole::kValue;
     column->value_kind = ValueKind::kReflectanceCosI;
   } else if (joined == "reflectance" || joined == "reflectivity" || joined == "refl" || joined == "reflexion" ||
-             joined == "reflectances" || joined == "bdr" ||
-             (joined == "scatter" && !ParseAngleUnit(name.unit)) || joined == "brdf_cos" || joined == "bsdf_cos" ||
-             joined == "f_cos" || joined == "fr_cos" || joined == "cos_brdf" || joined == "cosine_brdf" ||
-             joined == "cosine_weighted_brdf") {
+             joined == "reflectances" || joined == "bdr" || (joined == "scatter" && !ParseAngleUnit(name.unit)) ||
+             joined == "brdf_cos" || joined == "bsdf_cos" || joined == "f_cos" || joined == "fr_cos" ||
+             joined == "cos_brdf" || joined == "cosine_brdf" || joined == "cosine_weighted_brdf") {
     column->role = ColumnRole::kOtherValue;
   } else {
     return false;
