@@ -34,7 +34,8 @@ Recipe ChooseAutomatically(const Measurement& measurement) {
   const Recipe automatic = AutomaticRecipe(TraitsOf(measurement));
   const std::size_t channels = measurement.channels.size();
   const std::size_t usable = UsableSamples(measurement.samples, automatic.theta_max), numbers = usable * channels;
-  if (numbers >= FreeParameters(automatic, channels)) return automatic;
+  // With as many parameters as numbers it would go through all of them, and determine nothing beside.
+  if (numbers > FreeParameters(automatic, channels)) return automatic;
   Model model;
   model.lobes.resize(1);
   model.lobes[0].ndf = Ndf::kGgx;

@@ -184,6 +184,8 @@ class Ladder {
       const Recipe recipe = WithKnots(rung.recipe, all_, channels_, options_, &pool_);
       const Layout layout(recipe, channels_);
       rung.tried.free_parameters = layout.size();
+      if (all_.size() * channels_.size() < layout.size() || (!rungs_.empty() && LeastTraining() < layout.size()))
+        return nullptr;
       const std::vector<DistinctMinimum> minima = FindMinima(Problem(all_, recipe), layout, all_, options_, &pool_);
       if (minima.empty()) return nullptr;
       const ParameterValues values = layout.Report(minima[0].solution.u.data());
@@ -208,12 +210,20 @@ class Ladder {
             SumSquares(recipe.metric, recipe.noise, recipe.weighting, true, folds_[k].test, f_r).MeanSquare();
       });
     } catch (const InputError&) {
-      return nullptr;  // fewer samples than parameters
+      return nullptr;  // what cannot be fitted is no candidate
     }
     rung.recipe = wanted;  // the whole measurement may reach further knots
     if (!std::isfinite(rung.mean())) return nullptr;
     rungs_.push_back(std::move(rung));
     return &rungs_.back();
+  }
+
+  // Numbers that the fold with the fewest leaves: a model of more parameters goes through all of them, and what it
+  // predicts of the others is chance.
+  std::size_t LeastTraining() const {
+    std::size_t least = all_.size();
+    for (const Split& fold : folds_) least = std::min(least, fold.training.size());
+    return least * channels_.size();
   }
 
   Recipe simplest_;

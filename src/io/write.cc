@@ -30,6 +30,17 @@ namespace {
 using Path = std::filesystem::path;
 using Paths = std::vector<Path>;
 
+// Of the samples, those that an image holds: it shows the rest of them only through what is interpolated.
+std::string SamplesOfImage(const Samples& samples, const ExrMap& map) {
+  constexpr double kNear = 2 * kPi / 180;
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    near += map.DistanceTo(samples.wi(i), samples.wo(i)) <= kNear ? 1 : 0;
+  return std::to_string(near) + " of " + std::to_string(samples.size()) +
+         " samples lie within 2 degrees of what the image holds; it is interpolated between samples, and compared with "
+         "that interpolation";
+}
+
 // A goniometer's directions for a function without samples.
 Measurement Tabulated(const WriteSource& source) {
   GoniometerLayout layout;
@@ -302,6 +313,8 @@ Conversion Convert(const WriteSource& source, const WriteFormat& format, const W
   const Measurement original = source.measurement != nullptr ? *source.measurement : Tabulated(source);
   if (back.format == "exr" && options.exr.axes != ExrAxes::kUtia) {
     // Only what the image holds can be compared.
+    if (source.measurement != nullptr)
+      conversion.losses.push_back(SamplesOfImage(source.measurement->samples, options.exr));
     conversion.difference = CompareWith(back, FunctionOf(with_function));
   } else {
     const BrdfFunction tabulated = names.size() == 1 ? TabulatedBrdf(conversion.files[0], back).brdf : nullptr;

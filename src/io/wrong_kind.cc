@@ -12,7 +12,7 @@ struct Kind {
   const char* message;
 };
 
-constexpr std::array<Kind, 22> kKinds = {{
+constexpr auto kKinds = std::to_array<Kind>({
     {"version https://git-lfs.github.com/spec",
      "is a pointer of Git LFS, not the file itself; run 'git lfs pull' in its repository, or download the file from "
      "its page"},
@@ -29,7 +29,8 @@ constexpr std::array<Kind, 22> kKinds = {{
     {"\x89PNG\r\n", "is a PNG picture, which holds no f_r; values from a plot must be read off and written as CSV"},
     {"\xff\xd8\xff", "is a JPEG picture, which holds no f_r; values from a plot must be read off and written as CSV"},
     {"GIF8", "is a GIF picture, which holds no f_r"},
-    {"II*\0", "is a TIFF picture; only OpenEXR pictures are read, convert it and say its axes with --exr-axes"},
+    {std::string_view("II*\0", 4),
+     "is a TIFF picture; only OpenEXR pictures are read, convert it and say its axes with --exr-axes"},
     {"#?RADIANCE",
      "is a Radiance picture; only OpenEXR pictures are read, convert it and say its axes with --exr-axes"},
     {"\x89HDF\r\n", "is an HDF5 file (also .mat of MATLAB 7.3, netCDF 4); export the arrays as CSV rows"},
@@ -39,11 +40,30 @@ constexpr std::array<Kind, 22> kKinds = {{
      "is a NumPy array; write it as CSV with a line of names: numpy.savetxt(name, rows, delimiter=',', "
      "header='theta_i,phi_i,theta_o,phi_o,brdf')"},
     {"MATLAB 5.0 MAT-file", "is a MATLAB file; write the table as CSV: writetable(T, 'name.csv')"},
+    {"MATLAB 7.3 MAT-file", "is a MATLAB file; write the table as CSV: writetable(T, 'name.csv')"},
     {"{\\rtf", "is a rich-text document; save it as plain text"},
     {"SQLite format 3", "is an SQLite database; export the table as CSV"},
     {"\x80\x04\x95", "is a Python pickle; write the table as CSV"},
     {"PAR1", "is a Parquet file; write the table as CSV"},
-}};
+    {std::string_view("MM\0*", 4),
+     "is a TIFF picture; only OpenEXR pictures are read, convert it and say its axes with --exr-axes"},
+    {"%!PS", "is a PostScript document; export the table that it shows as CSV"},
+    {"CPYA", "is an Origin project; export the worksheet as ASCII: File, Export"},
+    {"CPYUA", "is an Origin project; export the worksheet as ASCII: File, Export"},
+    {"RDX2\n", "is an R workspace; write the table as CSV: write.csv(table, 'name.csv')"},
+    {"RDX3\n", "is an R workspace; write the table as CSV: write.csv(table, 'name.csv')"},
+    {"\x7f"
+     "ELF",
+     "is a program, not a measurement"},
+    {"MZ\x90", "is a program, not a measurement"},
+    {"IESNA", "is a photometric file of a luminaire (IES), whose intensities are no f_r"},
+    {"##TITLE=", "is a JCAMP-DX spectrum, which has no directions"},
+    {"/annex/objects/",
+     "is a pointer of git-annex, not the file itself; run 'git annex get' in its repository, or download the file from "
+     "its page"},
+    {std::string_view("\xff\xfe\0\0", 4), "is UTF-32 text; save it as UTF-8"},
+    {std::string_view("\0\0\xfe\xff", 4), "is UTF-32 text; save it as UTF-8"},
+});
 
 bool Holds(std::string_view bytes, std::string_view part) {
   return bytes.substr(0, 4096).find(part) != std::string_view::npos;
@@ -58,6 +78,23 @@ std::string DescribeZip(std::string_view bytes) {
   return "is a zip archive; unpack it and name the file within";
 }
 
+// `head`: the beginning of XML or JSON, in small letters.
+std::string DescribeMarkup(std::string_view head) {
+  const auto has = [&](std::string_view part) { return head.find(part) != std::string_view::npos; };
+  if (has("<svg")) return "is an SVG picture, which holds no f_r; export the table that it shows as CSV";
+  if (has("excel.sheet") || has("office:spreadsheet"))
+    return "is an Excel workbook in XML; save the sheet as CSV: File, Save as, CSV UTF-8";
+  if (has("<error>") && has("<code>"))
+    return "is a server's message that the file cannot be had, not a measurement; look for another link";
+  if (has("<scene ") || has("<materialx"))
+    return "is a renderer's material, not a measurement; `lobefit compare FILE --with` sets it beside one";
+  if (has("\"lobefit material\""))
+    return "is a material document, not a measurement; `lobefit compare FILE --with` sets it beside one, `lobefit "
+           "synth` "
+           "makes a measurement of it";
+  return "";
+}
+
 }  // namespace
 
 std::string DescribeWrongKind(std::string_view bytes) {
@@ -66,13 +103,17 @@ std::string DescribeWrongKind(std::string_view bytes) {
   }
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06")) return DescribeZip(bytes);
   const std::string head = ToLower(Trim(bytes.substr(0, 1024)));
-  const bool html = head.starts_with("<!doctype html") || head.starts_with("<html") || head.starts_with("<head") ||
+  const bool html = head.starts_with("<!doctype html") || head.starts_with("<html") || head.starts_with("<head>") ||
+                    head.starts_with("<head ") || head.starts_with("<a href") ||
                     (head.starts_with("<!--") && head.find("<html") != std::string::npos) ||
                     (head.starts_with("<?xml") && head.find("<html") != std::string::npos);
-  if (html)
+  const bool missing = head.size() < 40 && (head == "not found" || head.starts_with("404: not found"));
+  if (html || missing)
     return "is a web page, not a measurement: the link led to a page about the file (or asked to log in); download the "
            "raw file";
-  return "";
+  if (bytes.size() > 512 && bytes.substr(257, 5) == "ustar")
+    return "is a tar archive; unpack it and name the file within";
+  return head.starts_with('<') || head.starts_with('{') ? DescribeMarkup(head) : "";
 }
 
 }  // namespace lobefit

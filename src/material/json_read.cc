@@ -151,6 +151,12 @@ Material MaterialFromJson(const std::string& text, const std::string& file_name)
         fmt::format("{}: is not a material document of lobefit (one of its objects has more than {} members)",
                     file_name, kMostMembers));
   }
+  // Behind blanks and a byte order mark.
+  const std::size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (begin != std::string::npos && text[begin] != '{') {
+    throw InputError(file_name +
+                     ": is not a material document of lobefit; if it is a measurement, `lobefit fit` makes one of it");
+  }
   Json json;
   try {
     json = Json::parse(text);

@@ -65,6 +65,7 @@ TEST_F(BadInput, EveryMistakeHasItsExitCodeAndOneMessage) {
       {"lobefit fit $SOURCE/samples/satin_plastic.csv --recipe quantity.toml", 3,
        "quantity.toml:2: quantity = 'cos' is unknown; allowed: f, f-cos-o"},
       {"lobefit fit few.csv --recipe sel", 3, "take fewer lobes"},
+      {"lobefit export few.csv --to pbrt", 3, "if it is a measurement, `lobefit fit` makes one of it"},
       {"lobefit report not.material.json $SOURCE/samples/satin_plastic.csv", 3,
        "not.material.json: is not a material document"},
       {"lobefit synth $SOURCE/fits/ggx.toml --out x.csv", 3, "parameter 'alpha_x' has 0 values"},

@@ -34,6 +34,14 @@ TEST_F(FitVerb, PrintsTheSameDocumentAsJson) {
   for (const char* timing : {"read", "fit", "report"}) EXPECT_TRUE(json["timings_s"].contains(timing));
 }
 
+// The automatic choice never picks what the fit then refuses.
+TEST_F(FitVerb, FiveSamplesFitSomething) {
+  WriteWholeFile(folder_ / "few.csv", "theta_i,theta_o,brdf\n0,0,0.3\n30,0,0.2\n30,30,0.9\n60,0,0.1\n60,60,2\n");
+  const ProgramResult result = Shell("lobefit fit few.csv --no-report");
+  EXPECT_THAT(result.exit_code, testing::AnyOf(0, 4)) << result.err;
+  EXPECT_THAT(result.out, testing::HasSubstr("5 of 5 samples used"));
+}
+
 TEST_F(FitVerb, RecoversTheTruthOfItsSample) {
   // The truth of samples/brushed_metal.csv is in samples/brushed_metal.toml.
   const ProgramResult result = Shell("lobefit fit $SOURCE/samples/brushed_metal.csv --json --no-report");

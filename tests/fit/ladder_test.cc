@@ -2,11 +2,13 @@
 #include "lobefit/fit/ladder.h"
 
 #include <algorithm>
+#include <array>
 
 #include "tests/support/synthetic.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lobefit/fit/automatic.h"
 #include "lobefit/fit/fit.h"
 #include "lobefit/material/abg.h"
 #include "lobefit/math/directions.h"
@@ -242,6 +244,28 @@ TEST(Ladder, OneIncidenceIsNothingToJudgeBy) {
   const LadderChoice choice = ClimbLadder(simplest, {}, &measurement);
   EXPECT_TRUE(choice.tried.empty());
   EXPECT_EQ(choice.recipe.name, simplest.name);
+}
+
+// Of three incidences with five numbers in all: no model of more parameters than the folds leave is a candidate.
+TEST(Ladder, FewNumbersLeaveFewModels) {
+  MeasurementBuilder builder({{"Y"}, {}});
+  for (const auto& [theta_i, theta_o, value] :
+       {std::array{0.0, 0.0, 0.3}, {30.0, 0.0, 0.2}, {30.0, 30.0, 0.9}, {60.0, 0.0, 0.1}, {60.0, 60.0, 2.0}})
+    builder.Add(FromSpherical(DegreesToRadians(theta_i), 0), FromSpherical(DegreesToRadians(theta_o), kPi), &value, 0);
+  Measurement measurement = builder.Finish();
+  const Recipe simplest = ChooseAutomatically(measurement);
+  const LadderChoice choice = ClimbLadder(simplest, {}, &measurement);
+  for (const TriedModel& model : choice.tried) EXPECT_LE(model.free_parameters, 3U) << model.name;
+  EXPECT_EQ(choice.recipe.name, "ggx");
+}
+
+// Four numbers would be met exactly by four parameters, whatever they are.
+TEST(Automatic, LeavesANumberMoreThanItsParameters) {
+  MeasurementBuilder builder({{"Y"}, {}});
+  const double value = 1;
+  for (const double theta_o : {20., 25., 30., 35.})
+    builder.Add(FromSpherical(DegreesToRadians(30), 0), FromSpherical(DegreesToRadians(theta_o), kPi), &value, 0);
+  EXPECT_EQ(ChooseAutomatically(builder.Finish()).name, "ggx");
 }
 
 Material Judged(VerdictKind kind, std::vector<TriedModel> tried) {

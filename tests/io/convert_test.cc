@@ -175,6 +175,8 @@ TEST(Convert, CarriesCommentsAndUncertaintiesOrSaysNot) {
   const TemporaryFile image;
   const Conversion exr = Convert(source, FindWriteFormat("exr", image.path()), {}, image.path());
   EXPECT_TRUE(says(exr, "4 comment lines of the file are not written"));
+  // All in the plane of incidence, and the slice across it.
+  EXPECT_TRUE(says(exr, "0 of 3 samples lie within 2 degrees of what the image holds"));
   EXPECT_TRUE(says(exr, "the standard deviations of the samples are not written"));
   const TemporaryFile mountain;
   const Conversion text = Convert(source, FindWriteFormat("mountain", mountain.path()), {}, mountain.path());

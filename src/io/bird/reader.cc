@@ -20,6 +20,7 @@
 #include "lobefit/math/directions.h"
 #include "lobefit/measurement/pair_index.h"
 #include "lobefit/measurement/prepare/noise.h"
+#include "lobefit/measurement/prepare/polarisation.h"
 
 namespace lobefit {
 namespace {
@@ -131,6 +132,18 @@ class BirdReader {
     return RadiansPerUnit(*known);
   }
 
+  // What a number of uncertainty is to be multiplied by where it is relative to the value; nothing where it is absolute.
+  std::optional<double> RelativeUncertainty() const {
+    const std::string unit = PlainUnit(sigma_unit_);
+    if (unit == "%" || unit == "percent") return 0.01;
+    if (unit == "relative" || unit == "rel" || unit == "rel.") return 1.0;
+    if (const std::optional<ValueScale> known = ParseValueScale(unit);
+        known && known->form == ValueScale::Form::kLinear && !known->arbitrary)
+      return std::nullopt;
+    Fail("the uncertainty of BRDF has the unit '" + Excerpt(sigma_unit_) +
+         "', which is not known; allowed are sr^-1, % and relative");
+  }
+
   // Nanometres of a point; 0 where the file states none.
   std::vector<double> Wavelengths(std::size_t count) const {
     for (const char* name : {"wavelength_i", "wavelength", "lambda"}) {
@@ -159,6 +172,7 @@ class BirdReader {
     if (!scale || scale->arbitrary)
       Fail("BRDF has the unit '" + Excerpt(brdf.unit) + "', which is not known; sr^-1 is allowed");
     const bool has_sigma = sigma_.size() == count;
+    const std::optional<double> relative = RelativeUncertainty();
     const double theta_i = AngleScale("theta_i"), phi_i = AngleScale("phi_i"), theta_r = AngleScale("theta_r"),
                  phi_r = AngleScale("phi_r");
     const std::vector<double> nm = Wavelengths(count);
@@ -199,8 +213,7 @@ class BirdReader {
       sum.first += value;
       ++sum.second;
       if (has_sigma && sigma_[i] > 0) {
-        const bool percent = sigma_unit_ == "%";
-        const double sigma = (percent ? 0.01 * std::fabs(value) : scale->factor) * sigma_[i] / coverage_;
+        const double sigma = (relative ? *relative * std::fabs(value) : scale->factor) * sigma_[i] / coverage_;
         cell.variance += sigma * sigma;
         ++cell.variances;
       }
@@ -221,10 +234,25 @@ class BirdReader {
           cell.variances > 0 ? std::sqrt(cell.variance) / cell.variances : 0.05 * std::fabs(cell.row.value);
       table.Add(cell.row);
     }
-    return Finish(table, skipped.measurement().set_aside, has_sigma, states.size());
+    Measurement measurement = Finish(table, skipped.measurement().set_aside, has_sigma);
+    if (states.size() > 1)
+      measurement.remarks.emplace_back("the points of two polarisations were averaged to f_r of unpolarised light");
+    if (states.size() == 1) RemarkOnPolarisation(states.begin()->first, &measurement);
+    return measurement;
   }
 
-  Measurement Finish(const WavelengthTable& table, const SetAside& skipped, bool has_sigma, std::size_t states) const {
+  // The one state of all points, as State() joins it.
+  static void RemarkOnPolarisation(std::string_view state, Measurement* measurement) {
+    for (const std::string_view part : Split(state, ';')) {
+      const std::string name = ToLower(Trim(part));
+      if (name.empty() || name == "null" || name == "unknown" || IsUnpolarised(name)) continue;
+      measurement->remarks.push_back("the polarisation is '" + Excerpt(name, 40) +
+                                     "': the values are f_r of that light, not of unpolarised light");
+      return;
+    }
+  }
+
+  Measurement Finish(const WavelengthTable& table, const SetAside& skipped, bool has_sigma) const {
     Measurement measurement = table.Gather(false);
     for (int r = 0; r < kSetAsideReasons; ++r)
       measurement.set_aside.Add(static_cast<SetAsideReason>(r), skipped[static_cast<SetAsideReason>(r)]);
@@ -237,8 +265,6 @@ class BirdReader {
     measurement.conventions["angle-unit"] = "as each variable states";
     measurement.conventions["value-kind"] = "f (header)";
     measurement.conventions["incident"] = "towards (format)";
-    if (states > 1)
-      measurement.remarks.emplace_back("the points of two polarisations were averaged to f_r of unpolarised light");
     return measurement;
   }
 

@@ -10,9 +10,11 @@
 namespace lobefit {
 
 void AmidRows::TakeWords(std::string_view line, std::size_t number, const RowParser& parser) {
+  // Of a file that was put behind another.
+  if (line.starts_with("\ufeff")) line.remove_prefix(3);
   std::vector<std::string_view> fields;
   SplitCsvLine(line, header_.separator, &fields);
-  if (Trim(line) == Trim(header_.names) || AreNamesAgain(fields)) {
+  if (Trim(line) == Trim(header_.names) || AreNamesAgain(fields) || AreUnitsAgain(fields)) {
     // What stands above names is the head of a page.
     message_.clear();
     words_ = 0;
@@ -45,8 +47,26 @@ bool AmidRows::AreNamesAgain(const std::vector<std::string_view>& fields) const 
   return true;
 }
 
+// A row of units below names that stand there again: the same units.
+bool AmidRows::AreUnitsAgain(const std::vector<std::string_view>& fields) const {
+  if (fields.size() > header_.columns.size()) return false;
+  std::string storage;
+  bool any = false;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string_view unit = Unquoted(fields[i], &storage);
+    if (unit.empty()) continue;
+    CsvColumn again = ClassifyColumn(header_.columns[i].name);
+    again.unit.clear();
+    SetUnit(unit, &again);
+    if (!IsUnitOrBlank(unit) || again.unit != header_.columns[i].unit) return false;
+    any = true;
+  }
+  return any;
+}
+
 void AmidRows::TakeComment(std::size_t number, std::string_view text) {
   constexpr std::size_t kMostComments = 10000;
+  text = WithoutEmptyCells(text, header_.separator);
   if (!ReadKeyAmidRows(number, text, {}) && !text.empty() && header_.comments.size() < kMostComments)
     header_.comments.emplace_back(PlainComment(text));
 }

@@ -31,6 +31,7 @@ class AmidRows {
 
  private:
   bool AreNamesAgain(const std::vector<std::string_view>& fields) const;
+  bool AreUnitsAgain(const std::vector<std::string_view>& fields) const;
   bool ReadKeyAmidRows(std::size_t number, std::string_view comment, const std::vector<std::string_view>& fields);
 
   const InputFile& file_;

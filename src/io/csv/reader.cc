@@ -172,6 +172,11 @@ class CsvReader {
         if (line[0] != '-' && IsComment(line)) amid_rows_.TakeComment(number, CommentText(line));
         continue;
       }
+      // The names of a table may be numbers but for the first.
+      if (line.size() == header_.names.size() && line == header_.names) {
+        amid_rows_.TakeWords(line, number, parser);
+        continue;
+      }
       if (builder->measurement().samples.origin.capacity() == 0) Reserve(line.size(), builder);
       switch (parser.Parse(line, number)) {
         case RowParser::Kind::kBlank:

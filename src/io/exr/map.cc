@@ -1,5 +1,6 @@
 #include "lobefit/io/exr/map.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lobefit/io/bsdf_xml/tensor_tree.h"
@@ -55,6 +56,14 @@ bool ExrMap::Directions(std::size_t column, std::size_t row, std::size_t width, 
       break;
   }
   return wi->z > kHorizon && wo->z > kHorizon;
+}
+
+double ExrMap::DistanceTo(const Vec3& wi, const Vec3& wo) const {
+  if (axes == ExrAxes::kUtia) return 0;
+  if (axes == ExrAxes::kHemisphere) return std::acos(std::clamp(Dot(wi, FromSpherical(theta_i, phi_i)), -1.0, 1.0));
+  const HalfDifference angles = ToFoldedHalfDifference(wi, wo);
+  const double folded = std::acos(std::fabs(std::cos(phi_d)));
+  return std::asin(std::sin(angles.theta_d) * std::sin(std::fabs(angles.phi_d - folded)));
 }
 
 }  // namespace lobefit

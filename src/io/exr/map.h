@@ -22,6 +22,10 @@ struct ExrMap {
   // pairs. phi_h of a slice is 0.
   bool Directions(std::size_t column, std::size_t row, std::size_t width, std::size_t height, Vec3* wi, Vec3* wo,
                   double* measure) const;
+
+  // Radians by which the pair lies off what an image with these axes holds: the angle of the difference vector to a
+  // slice, of the light to that of a hemisphere.
+  double DistanceTo(const Vec3& wi, const Vec3& wo) const;
 };
 
 }  // namespace lobefit

@@ -160,11 +160,13 @@ void DecodedFile::DecodeText() {
     decoded_ = std::move(text);
     rest_ = {};
   };
-  if (all.starts_with("\xef\xbb\xbf")) {
+  std::size_t marks = 0;  // two where a program wrote its own before that of the text
+  while (all.substr(marks).starts_with("\xef\xbb\xbf")) marks += 3;
+  if (marks > 0) {
     if (decoded_.empty()) {
-      rest_.remove_prefix(3);
+      rest_.remove_prefix(marks);
     } else {
-      decoded_.erase(0, 3);
+      decoded_.erase(0, marks);
     }
   } else if (const char* encoding = all.starts_with("\xff\xfe") && IsUtf16Text(all.substr(2), true) ? "UTF-16LE"
                                     : all.starts_with("\xfe\xff") && IsUtf16Text(all.substr(2), false)
@@ -181,6 +183,22 @@ void DecodedFile::DecodeText() {
     std::string text(bytes());
     std::replace(text.begin(), text.end(), '\r', '\n');
     replace(std::move(text));
+  }
+  TrimEnd();
+}
+
+// What DOS ends a text with, and the zeros up to where an instrument made room for it.
+void DecodedFile::TrimEnd() {
+  const std::string_view all = bytes();
+  constexpr std::string_view kFill("\x1a\0", 2);
+  if (all.empty() || kFill.find(all.back()) == std::string_view::npos) return;
+  const std::size_t last = all.find_last_not_of(kFill);
+  const std::size_t size = last == std::string_view::npos ? 0 : last + 1;
+  if (!IsText(all.substr(0, std::min(size, kHead)))) return;
+  if (decoded_.empty()) {
+    rest_ = rest_.substr(0, size);
+  } else {
+    decoded_.resize(size);
   }
 }
 

@@ -28,7 +28,9 @@ auto FindSpelling(const Table& table, std::string_view word) -> std::optional<de
   return std::nullopt;
 }
 
-constexpr std::array<Spelling<AngleUnit>, 32> kAngles = {{
+constexpr std::array<Spelling<AngleUnit>, 34> kAngles = {{
+    {"deg.", AngleUnit::kDegrees},
+    {"rad.", AngleUnit::kRadians},
     {"deg", AngleUnit::kDegrees},
     {"degs", AngleUnit::kDegrees},
     {"degree", AngleUnit::kDegrees},
@@ -155,7 +157,13 @@ double ValueScale::Slope(double number) const {
 }
 
 std::string PlainUnit(std::string_view unit) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 27> kSigns = {{
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 31> kSigns = {{
+      // The degree sign of UTF-8 taken for Windows-1252, of DOS and of old Macs taken for it, and what stands for a sign
+      // that was lost.
+      {"\u00c2\u00b0", "deg"},
+      {"\u00f8", "deg"},
+      {"\u00a1", "deg"},
+      {"\ufffd", "deg"},
       {"\xc2\xb5", "u"},       // micro sign
       {"\xce\xbc", "u"},       // Greek mu
       {"\xc2\xb0", "deg"},     // degree sign
@@ -249,6 +257,7 @@ std::optional<ValueScale> ParseValueScale(std::string_view unit) {
     if (rest.empty() || IsPerSteradian(rest)) return ValueScale{Form::kLinear, factor, false};
     return std::nullopt;
   }
+  if (rest.starts_with("mcd") && IsPerSteradian(rest.substr(1))) return ValueScale{Form::kLinear, 1e-3, false};
   if (rest == "msr^-1" || rest == "1/msr" || rest == "/msr" || rest == "msr-1")
     return ValueScale{Form::kLinear, 1e3, false};
   const std::optional<double> factor = Factor(plain, &rest);

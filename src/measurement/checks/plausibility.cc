@@ -241,8 +241,8 @@ class Checks {
   }
 
   void CheckMarks() {
-    std::size_t zeros = 0, at_largest = 0, at_second = 0;
-    double largest = -kInfinity, second = -kInfinity, farthest = -1;
+    std::size_t zeros = 0, at_largest = 0, at_second = 0, at_least = 0;
+    double largest = -kInfinity, second = -kInfinity, least = kInfinity, farthest = -1;
     std::map<double, std::size_t> marks;
     const std::vector<double>& values = samples_.values[0];
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -258,6 +258,11 @@ class Checks {
       }
       if (value == largest) ++at_largest;
       if (value == second) ++at_second;
+      if (value < least) {
+        least = value;
+        at_least = 0;
+      }
+      if (value == least) ++at_least;
       if (value == 0) {
         ++zeros;
         farthest = std::max(farthest, std::acos(std::clamp(Dot(samples_.wi(i), samples_.wo(i)), -1.0, 1.0)));
@@ -266,6 +271,9 @@ class Checks {
           std::fabs(value) >= 1e15)
         ++marks[value];
     }
+    // Other marks ("-32767", "-88.88") are known by what noise never does: the same number again and again, far below
+    // what the largest value is above zero.
+    if (at_least >= 3 && largest > 0 && -least > 3 * largest) marks.emplace(least, at_least);
     const std::size_t count = values.size();
     if (zeros >= 3 && 2 * zeros < count) {
       const double degrees = std::ceil(farthest * 180 / kPi);
@@ -274,7 +282,9 @@ class Checks {
                                               " degrees of the light's own direction, which a detector shades"
                                         : "") +
                          ": if that stands for no value, use --no-value 0" +
-                         (degrees <= 25 ? " or --exclude retro:" + Short(degrees) : ""));
+                         (degrees <= 25 ? " or --exclude retro:" + Short(degrees)
+                                        : "; if negative readings were set to 0, give them as they were read, for "
+                                          "without them dim values come out too bright"));
     }
     for (const auto& [value, times] : marks) {
       remarks_.push_back(Count(times, "value") + (times == 1 ? " is " : " are ") + FormatDouble(value) +

@@ -1,4 +1,5 @@
 #include "tests/io/csv/read_csv.h"
+#include <gmock/gmock.h>
 
 namespace lobefit {
 namespace {
@@ -44,6 +45,31 @@ TEST(Bird, ReadsDraftsOfRows) {
   ASSERT_EQ(m.samples.size(), 1U);
   ExpectSample(m, 0, 45, 0, 45, 180, 1.9);
   EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 1U);
+}
+
+TEST(Bird, OnePolarisationIsSaid) {
+  const std::string values = R"(,"BRDF":{"unit":"sr^-1","values":[1,2]})";
+  const Measurement s =
+      ReadText(BirdDocument(kAngles + std::string(R"("polarization_i":{"values":["s","s"]})") + values));
+  EXPECT_TRUE(HasRemark(s, "the polarisation is 's'"));
+  for (const char* name : {"u", "unpolarized", "unpolarised", ""}) {
+    const Measurement m = ReadText(BirdDocument(kAngles + std::string(R"("polarization_i":{"values":[")") + name +
+                                                R"(",")" + name + R"("]})" + values));
+    EXPECT_TRUE(m.remarks.empty()) << name;
+  }
+}
+
+TEST(Bird, UncertaintiesRelativeToTheValue) {
+  const auto sigma = [](const std::string& unit, const std::string& number) {
+    return ReadText(BirdDocument(std::string(kAngles) +
+                                 R"("BRDF":{"unit":"sr^-1","values":[2,4],"uncertainty":{"unit":")" + unit +
+                                 R"(","value":)" + number + "}}"))
+        .samples.sigma;
+  };
+  EXPECT_THAT(sigma("%", "2"), testing::Pointwise(testing::DoubleEq(), {0.04, 0.08}));
+  EXPECT_THAT(sigma("relative", "0.02"), testing::Pointwise(testing::DoubleEq(), {0.04, 0.08}));
+  EXPECT_THAT(sigma("sr^-1", "0.02"), testing::Pointwise(testing::DoubleEq(), {0.02, 0.02}));
+  EXPECT_THROW(sigma("furlong", "1"), InputError);
 }
 
 TEST(Bird, RefusesWhatItCannotUnderstand) {

@@ -12,8 +12,26 @@ namespace {
 const std::string kRows = "theta_i,phi_i,theta_o,phi_o,brdf\n0.5,0,0.7,3,1\n";
 
 TEST(CsvKeys, AnySpellingAndPlace) {
-  for (const char* key : {"# angle-unit: rad", "# angle_unit: rad", "# Angle Unit = radians", "% ANGLE-UNITS: rad",
-                          "// angle unit: rad", "# units: rad", "# Angles: radians", "angle unit,rad"}) {
+  for (const char* key : {"# angle-unit: rad",
+                          "# angle_unit: rad",
+                          "# Angle Unit = radians",
+                          "% ANGLE-UNITS: rad",
+                          "// angle unit: rad",
+                          "# units: rad",
+                          "# Angles: radians",
+                          "angle unit,rad",
+                          "# AngleUnit: rad",
+                          "# angle_unit = \"rad\"",
+                          "# angle-unit: 'radians'",
+                          "# \"angle-unit\": \"rad\"",
+                          "# unit_angles=radian",
+                          "# unit for all of the angles: rad",
+                          "# Einheit Winkel: rad",
+                          "# unité des angles : radians",
+                          "# units: rad, rad, rad, rad, 1/sr",
+                          "# radians",
+                          "# angle-unit: rad,,,,",
+                          "# angle unit,rad,,,"}) {
     const Measurement m = ReadText(std::string(key) + "\n" + kRows);
     EXPECT_NEAR(std::acos(m.samples.wi_z[0]), 0.5, 1e-12) << key;
     EXPECT_EQ(m.conventions.at("angle-unit"), "rad (header)") << key;
@@ -39,6 +57,48 @@ TEST(CsvKeys, MayStandBelowThousandsOfComments) {
   EXPECT_NEAR(measurement.samples.wi_z[0], std::cos(0.5), 1e-12);
 }
 
+// Beside their names, as people describe columns.
+TEST(CsvKeys, UnitsOfColumnsStatedAboveThem) {
+  for (const char* lines : {"# Column 1: theta_i (rad)\n# Column 2: phi_i (rad)\n# Column 3: theta_o (rad) - of the "
+                            "detector\n# 4: phi_o (rad)\n",
+                            "# theta_i: incidence angle in radians\n# phi_i: rad\n# theta_o = viewing angle [rad]\n# "
+                            "phi_o: azimuth (rad)\n",
+                            "# theta_i [rad]\n# phi_i [rad]\n# theta_o [rad]\n# phi_o (rad)\n",
+                            "# theta_i, phi_i, theta_o, phi_o: rad; brdf: 1/sr\n",
+                            "# - {name: theta_i, unit: rad, datatype: float64}\n# - {name: phi_i, unit: rad}\n"
+                            "# - {name: theta_o, unit: rad}\n# - {name: phi_o, unit: rad}\n"}) {
+    const Measurement m = ReadText(lines + kRows);
+    ASSERT_EQ(m.samples.size(), 1U) << lines;
+    EXPECT_NEAR(Norm(m.samples.wi(0) - FromSpherical(0.5, 0)), 0, 1e-12) << lines;
+    EXPECT_NEAR(Norm(m.samples.wo(0) - FromSpherical(0.7, 3)), 0, 1e-12) << lines;
+  }
+  // Each for itself.
+  const Measurement mixed = ReadText(
+      "# theta_i: deg\n# phi_o: rad\n# brdf: in %\ntheta_i,phi_i,theta_o,phi_o,brdf\n30,0,40,1.5707963267948966,50\n");
+  ExpectSample(mixed, 0, 30, 0, 40, 90, 0.5);
+  EXPECT_DOUBLE_EQ(ReadText("# Column 5: BRDF (1e-3/sr)\n" + kRows).samples.values[0][0], 1e-3);
+  // A range of angles is no statement of a unit, and what names say themselves is not overruled.
+  const Measurement prose = ReadText("# theta_o: from 0 to 1 rad\n# Detector: Si (calibrated)\n" + kRows);
+  EXPECT_NEAR(Norm(prose.samples.wo(0) - FromSpherical(DegreesToRadians(0.7), DegreesToRadians(3))), 0, 1e-12);
+  EXPECT_NE(MessageOf("# theta_i [rad]\ntheta_i (deg),theta_o (deg),brdf\n10,20,1\n").find("take one of them away"),
+            std::string::npos);
+}
+
+TEST(CsvKeys, PartsOfASentenceAreNoKeyInCells) {
+  EXPECT_NE(MessageOf("# AOI 30 deg, repeated at AOI 50 deg\ntheta_o,brdf\n10,1\n20,2\n").find("theta_i"),
+            std::string::npos);
+}
+
+// Saved by a spreadsheet, which fills each line up to the number of columns.
+TEST(CsvKeys, MayBeFollowedByEmptyCells) {
+  for (const char* text : {"# angle-unit: rad,,,\n# columns: theta_o=x,,,\ntheta_i,x,dphi,brdf\n0.5,0.7,0,1\n",
+                           "# angle-unit: rad;;;\n# columns: theta_o=x;;;\ntheta_i;x;dphi;brdf\n0.5;0.7;0;1\n"}) {
+    const Measurement m = ReadText(text);
+    ASSERT_EQ(m.samples.size(), 1U) << text;
+    EXPECT_NEAR(std::acos(m.samples.wo_z[0]), 0.7, 1e-12) << text;
+  }
+}
+
 TEST(CsvKeys, AFactorAndAUnitAreAProduct) {
   for (const char* unit : {"1e-3 1/sr", "10^-3 1/sr", "1e-3/sr", "10^-3 sr^-1"}) {
     const Measurement m =
@@ -61,7 +121,7 @@ TEST(CsvKeys, WhatResemblesAKeyIsSaid) {
     EXPECT_EQ(m.samples.size(), 1U) << prose;
     EXPECT_TRUE(HasRemark(m, "is not known (did you mean")) << prose;
   }
-  EXPECT_TRUE(HasRemark(ReadText("# unit for all of the angles: rad\n" + kRows), "is not known and was not used"));
+  EXPECT_TRUE(HasRemark(ReadText("# unit for most of it: rad\n" + kRows), "is not known and was not used"));
   EXPECT_TRUE(HasRemark(ReadText("# light convention: away\n" + kRows), "is not known and was not used"));
   // Synthetic files say the truth, which no reader takes for a unit.
   EXPECT_FALSE(HasRemark(ReadText("# truth, scale = 0.5\n" + kRows), "is not known"));

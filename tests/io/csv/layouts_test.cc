@@ -240,7 +240,9 @@ TEST(CsvLayouts, SamplesInOneFileAreToldApart) {
 }
 
 TEST(CsvLayouts, PolarisationsInColumns) {
-  for (const char* names : {"BRDF_s,BRDF_p", "f_s,f_p", "f_TE,f_TM", "BRDF_s (1/sr),BRDF_p (1/sr)"}) {
+  for (const char* names :
+       {"BRDF_s,BRDF_p", "f_s,f_p", "f_TE,f_TM", "BRDF_s (1/sr),BRDF_p (1/sr)", "s-BRDF,p-BRDF",
+        "BRDF (s-pol),BRDF (p-pol)", "s-polarised BRDF,p-polarised BRDF", "BRDF perpendicular,BRDF parallel"}) {
     const Measurement m = ReadText("theta_i,theta_o,dphi," + std::string(names) + "\n10,20,0,1,2\n10,30,0,3,-\n");
     ASSERT_EQ(m.samples.size(), 1U) << names;
     EXPECT_EQ(m.samples.values[0][0], 1.5) << names;
@@ -280,6 +282,39 @@ TEST(CsvLayouts, AnAngleAboveOrInTheNamesOfATable) {
     ExpectSample(m, 1, 30, 0, 0, 0, 2);
     ExpectSample(m, 2, 10, 0, 20, 180, 3);
   }
+}
+
+// The name of what the columns are in a line of its own, as pandas and pivot tables of spreadsheets write it.
+TEST(CsvLayouts, PivotTables) {
+  for (const char* text :
+       {"theta_i,10,30\ntheta_o,,\n20,1,3\n40,2,4\n", ",brdf,brdf\ntheta_i,10,30\ntheta_o,,\n20,1,3\n40,2,4\n",
+        "BRDF;theta_i;\ntheta_o;10;30\n20;1;3\n40;2;4\n"}) {
+    const Measurement m = ReadText(text);
+    ASSERT_EQ(m.samples.size(), 4U) << text;
+    ExpectSample(m, 0, 10, 0, 20, 180, 1);
+    ExpectSample(m, 1, 30, 0, 20, 180, 3);
+    ExpectSample(m, 3, 30, 0, 40, 180, 4);
+  }
+  EXPECT_NE(MessageOf(",10,30\ntheta_o,,\n20,1,3\n40,2,4\n").find("theta_i"), std::string::npos);
+}
+
+TEST(CsvLayouts, ATableOfAzimuthsForEachIncidence) {
+  const std::string names = "theta_o\\phi_o,0,90\n";
+  const Measurement m = ReadText("theta_i = 10\n" + names + "20,1,2\n40,3,4\n\ntheta_i = 30\n" + names + "20,5,6\n");
+  ASSERT_EQ(m.samples.size(), 6U);
+  ExpectSample(m, 1, 10, 0, 20, 90, 2);
+  ExpectSample(m, 5, 30, 0, 20, 90, 6);
+}
+
+TEST(CsvLayouts, WhereAnAzimuthCountsFromInItsName) {
+  const Measurement mirror = ReadText("theta_i,theta_o,relative azimuth (0 = specular),brdf\n30,20,0,1\n30,40,90,2\n");
+  ASSERT_EQ(mirror.samples.size(), 2U);
+  EXPECT_GT(Dot(mirror.samples.wo(0), Reflect(mirror.samples.wi(0), {0, 0, 1})), std::cos(DegreesToRadians(11)));
+  const Measurement light = ReadText("theta_i,theta_o,relative azimuth (180 = specular),brdf\n30,20,0,1\n30,40,90,2\n");
+  ASSERT_EQ(light.samples.size(), 2U);
+  EXPECT_GT(Dot(light.samples.wo(0), light.samples.wi(0)), std::cos(DegreesToRadians(11)));
+  EXPECT_NE(MessageOf("theta_i,theta_o,relative azimuth (nominal),brdf\n30,20,0,1\n").find("speaks of an angle"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -9,10 +9,52 @@ namespace lobefit {
 namespace {
 
 TEST(CsvMarks, WordsForNoValueSetTheSampleAside) {
-  for (const char* word :
-       {"OVER",    "SAT",     "saturated", "-",        "--",        "N/A",    "#N/A", "#DIV/0!",
-        "1.#QNAN", "-1.#IND", "1.#INF",    "nan(ind)", "-nan(ind)", "<0.001", "> 10", "***",
-        "null",    "None",    "",          "\"\"",     "overflow",  "n.d.",   "####", "\xe2\x80\x94"}) {
+  for (const char* word : {"OVER",
+                           "SAT",
+                           "saturated",
+                           "-",
+                           "--",
+                           "N/A",
+                           "#N/A",
+                           "#DIV/0!",
+                           "1.#QNAN",
+                           "-1.#IND",
+                           "1.#INF",
+                           "nan(ind)",
+                           "-nan(ind)",
+                           "<0.001",
+                           "> 10",
+                           "***",
+                           "null",
+                           "None",
+                           "",
+                           "\"\"",
+                           "overflow",
+                           "n.d.",
+                           "####",
+                           "\xe2\x80\x94",
+                           "#WERT!",
+                           "#NV",
+                           "#N/D",
+                           "#\u00a1VALOR!",
+                           "#\u00a1DIV/0!",
+                           "#NOMBRE!",
+                           "#CALC!",
+                           "#N/A N/A",
+                           "Err:502",
+                           "k.A.",
+                           "clipped",
+                           "not measured",
+                           "nicht gemessen",
+                           "non mesur\u00e9",
+                           "\u00dcberlauf",
+                           "satur\u00e9",
+                           "fuera de rango",
+                           "\u221e",
+                           "-\u221e",
+                           "\\N",
+                           "no data",
+                           "below noise"}) {
     const Measurement m = ReadText("theta_i,theta_o,f\n10,20,1\n10,30," + std::string(word) + "\n10,40,2\n");
     EXPECT_EQ(m.samples.size(), 2U) << word;
     EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 1U) << word;
@@ -21,6 +63,11 @@ TEST(CsvMarks, WordsForNoValueSetTheSampleAside) {
   }
   EXPECT_EQ(ReadText("theta_i,theta_o,f\n10,20,1\n10,30,nan\n10,30,inf\n").set_aside[SetAsideReason::kNotFinite], 2U);
   EXPECT_NE(MessageOf("theta_i,theta_o,f\n10,20,1\n10,30,twelve\n").find("which is not a number"), std::string::npos);
+}
+
+TEST(CsvMarks, AMarkWithADecimalCommaIsNoNumberWithOne) {
+  const Measurement m = ReadText("theta_i;theta_o;f\n10;20;1.5\n10;30;1,#QNAN\n10;40;2.5\n");
+  EXPECT_EQ(m.samples.values[0], (std::vector<double>{1.5, 2.5}));
 }
 
 TEST(CsvMarks, NumbersAndWordsOfTheUser) {

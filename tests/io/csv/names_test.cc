@@ -158,9 +158,19 @@ TEST(CsvNames, ValuesTheirKindsAndScales) {
   EXPECT_DOUBLE_EQ(scaled("ln(BRDF)", 0), 1);
   EXPECT_DOUBLE_EQ(scaled("BRDF (1e-3/sr)", 5), 0.005);
   EXPECT_DOUBLE_EQ(scaled("BRDF (10^-3 sr^-1)", 5), 0.005);
+  for (const char* name : {"BRDF x 1000", "1000 * BRDF", "10^3*BRDF", "BRDF*1e3 (1/sr)", "f_r \u00d7 1000"}) {
+    EXPECT_EQ(ClassifyColumn(name).role, ColumnRole::kValue) << name;
+    EXPECT_DOUBLE_EQ(scaled(name, 500), 0.5) << name;
+  }
+  EXPECT_DOUBLE_EQ(scaled("q (mcd/m\u00b2/lx)", 70), 0.07);
+  EXPECT_DOUBLE_EQ(scaled("Luminance coefficient q (cd/m2/lx)", 0.07), 0.07);
+  EXPECT_EQ(kind("f_r*pi"), ValueKind::kReflectanceFactor);
+  // Times or divided by? And twice.
+  EXPECT_NE(ClassifyColumn("BRDF (x1000)").problem, "");
+  EXPECT_NE(ClassifyColumn("BRDF (\u00d71000)").problem, "");
+  EXPECT_NE(ClassifyColumn("100*BRDF (%)").problem, "");
   EXPECT_TRUE(ClassifyColumn("intensity (a.u.)").value_scale->arbitrary);
   EXPECT_NE(ClassifyColumn("BRDF (W/m2)").problem, "");
-  EXPECT_NE(ClassifyColumn("BRDF (x1000)").role, ColumnRole::kValue);  // times or divided by?
 }
 
 TEST(CsvNames, UncertaintiesAndWhatTheyAreRelativeTo) {
@@ -276,6 +286,35 @@ TEST(CsvNames, AnUnknownUnitOfAnAngleIsNotPassedOver) {
   EXPECT_NE(
       MessageOf("theta_i,theta_o,dphi [turn],brdf\n10,20,0.5,1\n").find("'dphi [turn]', which speaks of an angle"),
       std::string::npos);
+}
+
+TEST(CsvNames, OfBothSides) {
+  const auto coordinates = [](const std::vector<const char*>& names, Coordinate expected) {
+    for (const char* name : names) {
+      const CsvColumn column = ClassifyColumn(name);
+      EXPECT_EQ(column.role, ColumnRole::kCoordinate) << name;
+      EXPECT_EQ(column.coordinate, expected) << name;
+      EXPECT_EQ(column.problem, "") << name;
+    }
+  };
+  coordinates({"emitter_theta", "Tx_theta", "Lichteinfall Theta", "Quelle Theta", "Angle d'\u00e9clairement",
+               "\u00e1ngulo incidente", "invalshoek", "theta_i (\u00c2\u00b0)", "theta_i (\ufffd)", "theta_i (deg.)"},
+              Coordinate::kThetaI);
+  coordinates({"Ref_Theta", "Theta Reflectance", "thetaRef (deg)", "Rx_theta", "Empf\u00e4nger Theta",
+               "reflektionsvinkel", "\u200btheta_o", "EMI", "Scatter (deg)"},
+              Coordinate::kThetaO);
+  coordinates({"azimut inval"}, Coordinate::kPhiI);
+  coordinates({"azimut uitval", "reflektionsazimut"}, Coordinate::kPhiO);
+}
+
+TEST(CsvNames, WavelengthsInBracketsBesideAUnit) {
+  for (const char* name : {"BRDF (633 nm) [1/sr]", "f_r(633 nm)", "f_r 633"}) {
+    const CsvColumn column = ClassifyColumn(name);
+    EXPECT_EQ(column.role, ColumnRole::kChannel) << name;
+    EXPECT_EQ(column.wavelength_nm, 633) << name;
+    EXPECT_EQ(column.value_kind, ValueKind::kBrdf) << name;
+    EXPECT_EQ(column.problem, "") << name;
+  }
 }
 
 }  // namespace

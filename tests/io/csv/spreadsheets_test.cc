@@ -256,5 +256,63 @@ TEST(Spreadsheets, SignsOfTypesettersAndOtherThousands) {
   EXPECT_NE(MessageOf("theta_i,theta_o,f\n10,20,1\n10,30,~\n").find("use --no-value \"~\""), std::string::npos);
 }
 
+// Long names, units and remarks below each other, as Origin writes them; a "Scatter" in degrees is an angle.
+TEST(Spreadsheets, NamesUnitsAndRemarksBelowEachOther) {
+  for (const char* text :
+       {"Incidence\tScatter\tBRDF\ndeg\tdeg\t1/sr\n\t\tsample A\n10\t20\t0.5\n30\t40\t0.25\n",
+        "Long Name\tIncidence\tScatter\tBRDF\nUnits\tdeg\tdeg\t1/sr\nComments\t\t\tA\n\t10\t20\t0.5\n"
+        "\t30\t40\t0.25\n",
+        "Incidence,Detector,BRDF\n[deg],[deg],[1/sr]\n10,20,0.5\n30,40,0.25\n",
+        "Incidence,Scatter,BRDF\nangle (deg),angle (deg),(1/sr)\n10,20,0.5\n30,40,0.25\n"}) {
+    const Measurement m = ReadText(text);
+    ASSERT_EQ(m.samples.size(), 2U) << text;
+    ExpectSample(m, 1, 30, 0, 40, 180, 0.25);
+  }
+  EXPECT_NE(MessageOf("Incidence,Scatter,BRDF\n10,20,0.5\n").find("theta_o"), std::string::npos) << "not said";
+}
+
+TEST(Spreadsheets, ABlockBeginsWithItsNamesAndUnits) {
+  const std::string names = "Scatter angle;BRDF\ndeg;1/sr\n";
+  const Measurement m =
+      ReadText("Incidence angle;10;deg\n" + names + "20;0,5\n;\nIncidence angle;30;deg\n" + names + "40;0,25\n");
+  ASSERT_EQ(m.samples.size(), 2U);
+  ExpectSample(m, 0, 10, 0, 20, 180, 0.5);
+  ExpectSample(m, 1, 30, 0, 40, 180, 0.25);
+  EXPECT_NE(MessageOf("Incidence angle;10;deg\n" + names +
+                      "20;0,5\nIncidence angle;30;deg\nScatter angle;BRDF\nrad;1/sr\n"
+                      "0,7;0,25\n")
+                .find("'rad', which is not a number"),
+            std::string::npos);
+}
+
+TEST(Spreadsheets, MarksAroundTheText) {
+  const std::string rows = "theta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\n50,60,70,80,0.25\n";
+  for (const std::string& text : {rows + "\x1a", rows + std::string(300, '\0'), "\ufeff\ufeff" + rows,
+                                  rows.substr(0, 49) + "\ufeff" + rows.substr(0, 33) + rows.substr(49)}) {
+    const Measurement m = ReadText(text);
+    ExpectTheRows(m);
+    EXPECT_TRUE(m.remarks.empty());
+  }
+  const Measurement m = ReadText(
+      "theta_i\u00a0;\u00a0phi_i;theta_o;phi_o;brdf\n10\u00a0;\u00a020;30;40;\u00a00,5\n50;60;70;80;\u00a00,25\n");
+  ExpectTheRows(m);
+}
+
+TEST(Spreadsheets, ALineOfNumbersAboveTheNames) {
+  const std::string rows = "theta_i,phi_i,theta_o,phi_o,brdf\n10,20,30,40,0.5\n50,60,70,80,0.25\n";
+  ExpectTheRows(ReadText("Min,Max,Mean\n0.25,0.5,0.375\n\n" + rows));
+  // More of them are rows whose names are missing.
+  EXPECT_NE(MessageOf("1,2,3\n4,5,6\n7,8,9\n" + rows).find("no line names the columns"), std::string::npos);
+}
+
+TEST(Spreadsheets, NumbersWrittenForPeople) {
+  for (const char* row : {"=\"30\",=\"40\",=\"0.25\"", "'30,'40,'0.25", "30,40,2.5x10^-1",
+                          "30,40,2.5\u00b710\u207b\u00b9", "30,40,2.5 \u00d7 10^-1"}) {
+    const Measurement m = ReadText("theta_i,theta_o,brdf\n10,20,0.5\n" + std::string(row) + "\n");
+    ASSERT_EQ(m.samples.size(), 2U) << row;
+    ExpectSample(m, 1, 30, 0, 40, 180, 0.25);
+  }
+}
+
 }  // namespace
 }  // namespace lobefit

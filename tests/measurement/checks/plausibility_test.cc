@@ -97,8 +97,16 @@ TEST(Plausibility, MarksAndSaturation) {
   EXPECT_TRUE(Says(Hemisphere(shaded), "are exactly 0, all within"));
   EXPECT_TRUE(Says(Hemisphere(shaded), "--no-value 0"));
   EXPECT_TRUE(Says(Hemisphere(shaded), "--exclude retro:"));
+  EXPECT_FALSE(Says(Hemisphere(shaded), "negative readings"));
+  const auto clipped = [](const Vec3& wi, const Vec3& wo) { return wo.z < 0.4 ? 0.0 : Lobe(wi, wo); };
+  EXPECT_TRUE(Says(Hemisphere(clipped), "if negative readings were set to 0, give them as they were read"));
   const auto marked = [](const Vec3& wi, const Vec3& wo) { return wo.z > 0.99 ? -999.0 : Lobe(wi, wo); };
   EXPECT_TRUE(Says(Hemisphere(marked), "--no-value -999"));
+  const auto filled = [](const Vec3& wi, const Vec3& wo) { return wo.z > 0.99 ? -88.5 : Lobe(wi, wo); };
+  EXPECT_TRUE(Says(Hemisphere(filled), "--no-value -88.5"));
+  // A detector's least step below its zero is noise.
+  const auto stepped = [](const Vec3& wi, const Vec3& wo) { return wo.z < 0.4 ? -0.01 : Lobe(wi, wo); };
+  EXPECT_FALSE(Says(Hemisphere(stepped), "--no-value"));
   const auto saturated = [](const Vec3& wi, const Vec3& wo) { return std::min(0.8, Lobe(wi, wo) + 1e-3 * wo.x); };
   EXPECT_TRUE(Says(Hemisphere(saturated), "share the largest value, 0.8"));
 }

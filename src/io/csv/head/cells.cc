@@ -83,6 +83,8 @@ std::optional<Cell> ParseConcise(std::string_view number, std::string_view rest,
 
 std::string_view NumberOfCell(std::string_view field) {
   std::string_view text = Trim(field);
+  constexpr std::string_view kNoBreak = "\xc2\xa0";
+  while (text.starts_with(kNoBreak)) text = Trim(text.substr(kNoBreak.size()));
   if (text.starts_with('(')) text = Trim(text.substr(1));
   const std::size_t length = LengthOfNumber(text);
   return length == 0 ? field : text.substr(0, length);

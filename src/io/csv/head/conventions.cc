@@ -166,4 +166,15 @@ bool ReadConvention(std::size_t line, std::string_view text, CsvKeys* keys) {
   return false;
 }
 
+void TakeConventionsOfNames(std::size_t line, std::vector<CsvColumn>* columns, CsvKeys* keys) {
+  for (CsvColumn& column : *columns) {
+    const std::size_t open = column.name.find_first_of("([");
+    if (column.role != ColumnRole::kUnknown || open == std::string::npos) continue;
+    CsvColumn bare = ClassifyColumn(std::string_view(column.name).substr(0, open));
+    if (bare.role != ColumnRole::kCoordinate || !ReadConvention(line, column.name, keys)) continue;
+    bare.name = std::move(column.name);
+    column = std::move(bare);
+  }
+}
+
 }  // namespace lobefit

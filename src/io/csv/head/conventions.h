@@ -13,4 +13,7 @@ namespace lobefit {
 // changed, for one that says nothing of the kind or contradicts itself.
 bool ReadConvention(std::size_t line, std::string_view text, CsvKeys* keys);
 
+// Of names that are not understood for what stands in their brackets: "relative azimuth (0 = specular)".
+void TakeConventionsOfNames(std::size_t line, std::vector<CsvColumn>* columns, CsvKeys* keys);
+
 }  // namespace lobefit

@@ -7,6 +7,7 @@
 
 #include "lobefit/base/text/csv_fields.h"
 #include "lobefit/base/text/text.h"
+#include "lobefit/io/csv/head/conventions.h"
 #include "lobefit/io/csv/head/head_lines.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/no_value.h"
@@ -51,6 +52,7 @@ class HeaderReader {
     if (IsComment(header_.names)) std::erase(header_.comments, std::string(CommentText(header_.names)));
     mapping_.Fix(file_, header_.names_line, header_.columns, &header_.keys);
     if (mapping_.head()) header_.head_coordinate = mapping_.head();
+    TakeConventionsOfNames(header_.names_line, &header_.columns, &header_.keys);
     TakeUnits();
     TakeRows();
     header_.written_columns = header_.columns.size();
@@ -166,7 +168,8 @@ class HeaderReader {
     for (std::size_t i = data_; i < lines_.size(); ++i) {
       if (lines_[i].comment) continue;
       for (const std::string_view raw : SplitFields(lines_[i].text, header_.separator)) {
-        const std::string_view field = NumberOfCell(Unquoted(raw, &storage));
+        const std::string_view cell = Unquoted(raw, &storage), field = NumberOfCell(cell);
+        if (IsNoValueWord(cell)) continue;  // "1,#QNAN"
         if (HasThousandsSeparator(field)) {
           FailAtLine(file_, lines_[i].number,
                      "'" + Excerpt(field) +
@@ -198,10 +201,30 @@ class HeaderReader {
     return true;
   }
 
+  // "theta_i,10,30" over "theta_o,,": the name of what the columns are stands in a line of its own, as pandas writes it.
+  bool TryPivot(std::size_t at, const Fields& fields) {
+    if (fields.size() < 3 || at == 0 || lines_[at - 1].comment) return false;
+    if (std::any_of(fields.begin() + 1, fields.end(), [](std::string_view field) { return !Trim(field).empty(); }))
+      return false;
+    const Fields above = SplitFields(lines_[at - 1].text, header_.separator);
+    if (above.size() != fields.size() || !std::all_of(above.begin() + 1, above.end(), IsNumeric)) return false;
+    std::vector<CsvColumn> columns = Classify(above);
+    const CsvColumn head = columns[0];
+    std::string storage;
+    columns[0] = ClassifyColumn(Unquoted(fields[0], &storage));
+    mapping_.Rename(&columns);
+    if (head.role != ColumnRole::kCoordinate || columns[0].role != ColumnRole::kCoordinate ||
+        head.coordinate == columns[0].coordinate)
+      return false;
+    header_.head_coordinate = head.coordinate;
+    return SetNames(at, std::move(columns));
+  }
+
   bool TryNames(std::size_t at) {
     const std::string_view text = lines_[at].comment ? CommentText(lines_[at].text) : lines_[at].text;
     const Fields fields = SplitNames(text, header_.separator, row_fields_);
     if (fields.size() < 2 || (fields.size() == 2 && IsNumeric(fields[1]))) return false;
+    if (TryPivot(at, fields)) return true;
     std::vector<CsvColumn> columns = Classify(fields);
     CsvColumn rows;
     Coordinate head = Coordinate::kPhiO;
@@ -226,7 +249,8 @@ class HeaderReader {
       for (std::size_t i = 0; i < columns.size(); ++i) {
         const CsvColumn combined = ClassifyColumn(names[i]);
         // A heading may stand alone, over a cell that is empty or holds its unit.
-        const bool alone = columns[i].role == ColumnRole::kIgnored && combined.role == ColumnRole::kValue;
+        const bool alone = (columns[i].role == ColumnRole::kIgnored || IsUnitOrBlank(fields[i])) &&
+                           combined.role == ColumnRole::kValue;
         if (combined.role == ColumnRole::kCoordinate || alone) columns[i] = combined;
       }
     }
@@ -304,13 +328,16 @@ class HeaderReader {
                          [](const CsvColumn& column) { return column.role == ColumnRole::kCoordinate; });
   }
 
-  // "Samples 861 861 861" of an instrument's head is no row, where names and rows stand below it.
+  // "Samples 861 861 861" of an instrument's head is no row, nor is a line or two of numbers ("Min,Max,Mean" above them),
+  // where names and rows stand below.
   bool FindNamesBelow() {
+    constexpr std::size_t kMostNumbers = 2;
+    std::size_t numbers = 0;
     for (std::size_t i = data_; i + 1 < lines_.size(); ++i) {
       if (lines_[i].comment) continue;
       const Fields fields = SplitFields(lines_[i].text, header_.separator);
       if (IsData(fields)) {
-        if (IsNumeric(fields[0])) return false;
+        if (IsNumeric(fields[0]) && ++numbers > kMostNumbers) return false;
         continue;
       }
       if (!TryNames(i) || CountDirections(header_.columns) < 2) continue;
@@ -372,21 +399,39 @@ class HeaderReader {
                                      [](const CsvColumn& column) { return column.role == ColumnRole::kNumber; });
     if (!numbers || header_.head_coordinate || names == 0 || lines_[names - 1].comment) return;
     const Fields above = SplitFields(lines_[names - 1].text, header_.separator);
-    const auto is_filled = [](std::string_view field) { return !Trim(field).empty(); };
-    const auto only = std::find_if(above.begin(), above.end(), is_filled);
-    if (std::count_if(above.begin(), above.end(), is_filled) != 1) return;
-    std::string storage;
-    const CsvColumn column = ClassifyColumn(Unquoted(*only, &storage));
-    if (column.role == ColumnRole::kCoordinate) header_.head_coordinate = column.coordinate;
+    // Beside it the name of the values may stand, as a spreadsheet's pivot table has it.
+    std::optional<Coordinate> only;
+    for (const CsvColumn& column : Classify(above)) {
+      if (column.role == ColumnRole::kIgnored || column.role == ColumnRole::kValue) continue;
+      if (only || column.role != ColumnRole::kCoordinate) return;
+      only = column.coordinate;
+    }
+    if (only) header_.head_coordinate = only;
   }
 
   void ReadCommentKeys() {
     for (std::size_t i = 0; i < data_; ++i) {
       if (!lines_[i].comment) continue;
-      const std::string_view text = CommentText(lines_[i].text);
-      if (!ReadKey(file_, lines_[i].number, text, &header_.keys) && !text.empty())
+      const std::string_view text = WithoutEmptyCells(CommentText(lines_[i].text), header_.separator);
+      if (!ReadKey(file_, lines_[i].number, text, &header_.keys) && !IsKeyInCells(lines_[i].number, text) &&
+          !text.empty())
         header_.comments.emplace_back(PlainComment(text));
     }
+  }
+
+  // "# angle unit;rad", as a spreadsheet saves a comment whose value has a cell of its own.
+  bool IsKeyInCells(std::size_t line, std::string_view text) {
+    if (header_.separator == kBlankSeparator || text.find_first_of(":=") != std::string_view::npos) return false;
+    const Fields fields = SplitFields(text, header_.separator);
+    // A key has no number, and its value no blank: others are parts of a sentence.
+    std::size_t filled = 0;
+    for (const std::string_view field : fields) {
+      const std::string_view word = Trim(field);
+      if (word.empty()) continue;
+      if (word.find_first_of(filled == 0 ? "0123456789" : " ") != std::string_view::npos) return false;
+      ++filled;
+    }
+    return (filled == 2 || filled == 3) && ReadKey(file_, line, fields, &header_.keys);
   }
 
   // Titles above the names: "Wavelength (nm): 633;;;;", "AOI;30;deg".
@@ -410,6 +455,11 @@ class HeaderReader {
     header_.first_data_line = data_ < lines_.size() ? lines_[data_].number : lines_[names_].number + 1;
     for (std::size_t i = names_ + 1; i > 0 && i < data_; ++i) TakeUnitsOf(i, false);
     if (names_ > 0 && names_ < lines_.size()) TakeUnitsOf(names_ - 1, true);
+    if (const ColumnUnit* unit = SetColumnUnits(header_.keys.column_units, &header_.columns)) {
+      FailAtLine(file_, header_.names_line,
+                 "a line states the unit of '" + Excerpt(unit->column) + "' as '" + Excerpt(unit->unit) +
+                     "', which is not that of the column's name; take one of them away");
+    }
     for (const std::string& remark : header_.keys.remarks) header_.remarks.push_back(remark);
   }
 

@@ -20,12 +20,17 @@
 namespace lobefit {
 namespace {
 
+// "Angle Unit", "angle_unit" and "AngleUnit" are "angle-unit".
 std::string KeyName(std::string_view text) {
   std::string name;
-  for (const char c : ToLower(Trim(text))) {
-    const bool kept = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-    if (kept) {
-      name += c;
+  const auto is_lower = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto is_upper = [](char c) { return c >= 'A' && c <= 'Z'; };
+  text = Trim(text);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (is_upper(c) && i > 0 && is_lower(text[i - 1])) name += '-';
+    if (is_lower(c) || is_upper(c) || (c >= '0' && c <= '9')) {
+      name += is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c;
     } else if (!name.empty() && name.back() != '-') {
       name += '-';
     }
@@ -150,6 +155,21 @@ void RemarkOnUnused(std::size_t line, std::string_view key, const std::string& n
   if (!suggestion.empty()) keys->remarks.push_back(start + suggestion + " and was not used");
 }
 
+// Without the quotes that YAML and TOML put around a text.
+std::string_view WithoutQuotes(std::string_view word) {
+  const bool quoted = word.size() > 1 && (word.front() == '"' || word.front() == '\'') && word.back() == word.front();
+  return quoted ? Trim(word.substr(1, word.size() - 2)) : word;
+}
+
+bool TakeColumnUnits(std::string_view text, CsvKeys* keys) {
+  const std::vector<ColumnUnit> found = FindColumnUnits(text);
+  for (const ColumnUnit& unit : found) {
+    if (std::find(keys->column_units.begin(), keys->column_units.end(), unit) == keys->column_units.end())
+      keys->column_units.push_back(unit);
+  }
+  return !found.empty();
+}
+
 }  // namespace
 
 void CsvKeys::Fix(const FixedCoordinate& coordinate) {
@@ -172,9 +192,9 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
   if (ReadConvention(line, text, keys)) return true;
   const std::size_t at = text.find_first_of(":=");
   if (at == std::string_view::npos)
-    return ReadSentence(text, keys) || ReadPhrase(text, keys) || ReadMention(text, keys);
+    return ReadSentence(text, keys) || ReadPhrase(text, keys) || ReadMention(text, keys) || TakeColumnUnits(text, keys);
   if (ReadCoordinates(text, keys)) return true;
-  const std::string_view key = Trim(text.substr(0, at)), word = Trim(text.substr(at + 1));
+  const std::string_view key = WithoutQuotes(Trim(text.substr(0, at))), word = WithoutQuotes(Trim(text.substr(at + 1)));
   const std::string name = KeyName(key);
   if (Is(name, {"angle-unit", "angle-units", "angular-unit", "angular-units", "unit-of-angle", "unit-of-angles",
                 "units-of-angle", "units-of-angles"})) {
@@ -286,7 +306,7 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
       FailAtLine(file, line, "repeated is '" + Excerpt(word) + "'; allowed are first, mean");
     keys->repeated = std::string(word);
   } else if (!ReadUnits(name, word, keys) && !ReadCoordinate(key, word, keys) && !ReadParts(text, keys) &&
-             !ReadMention(text, keys)) {
+             !ReadMention(text, keys) && !TakeColumnUnits(text, keys)) {
     // A misspelt key would leave the file read in the wrong unit without a word.
     const std::string suggestion = name.size() > 5 ? DidYouMean(name, KnownUnitKeys()) : "";
     if (!suggestion.empty()) FailAtLine(file, line, "the key '" + Excerpt(key) + "' is not known" + suggestion);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lobefit/io/csv/head/column_units.h"
 #include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/text/format.h"
 #include "lobefit/measurement/measurement.h"
@@ -38,6 +39,7 @@ struct CsvKeys {
   std::string mention_of_incidence;    // the line that theta_i is from, where it is no key (ReadMention)
   std::string lone_azimuth;            // "Azimuth: 90", whose it is not said
   std::string columns, where, no_value, exclude, value_column, repeated;
+  std::vector<ColumnUnit> column_units;
   std::vector<std::string> remarks;  // keys that resemble a known one
 
   void Fix(const FixedCoordinate& coordinate);

@@ -1,8 +1,10 @@
 #include "lobefit/io/csv/head/lines.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lobefit/base/text/csv_fields.h"
+#include "lobefit/io/text/units.h"
 
 namespace lobefit {
 
@@ -15,6 +17,17 @@ std::string_view QuotedComment(std::string_view line) {
   const bool alone = line.find_first_not_of(",;\t ", end + 1) == std::string_view::npos;
   return end > 2 && alone && line.substr(2, end - 2).find('"') == std::string_view::npos ? line.substr(1, end - 1)
                                                                                          : std::string_view();
+}
+
+// "6.9x10^-2" and "6.9·10⁻²", as programs write numbers for people.
+std::optional<double> ParsePowerOfTen(std::string_view field, char decimal_mark) {
+  const std::string plain = PlainUnit(field);
+  const std::size_t at = plain.find("10^");
+  if (at == std::string::npos || at < 2 || (plain[at - 1] != 'x' && plain[at - 1] != '*')) return std::nullopt;
+  const std::optional<double> factor = ParseCsvNumber(std::string_view(plain).substr(0, at - 1), decimal_mark),
+                              exponent = ParseDouble(std::string_view(plain).substr(at + 3));
+  if (!factor || !exponent) return std::nullopt;
+  return *factor * std::pow(10.0, *exponent);
 }
 
 }  // namespace
@@ -30,6 +43,11 @@ std::string_view CommentText(std::string_view line) {
   if (const std::string_view quoted = QuotedComment(line); !quoted.empty()) line = quoted;
   line.remove_prefix(line.starts_with("//") ? 2 : 1);
   return Trim(line);
+}
+
+std::string_view WithoutEmptyCells(std::string_view text, char separator) {
+  while (separator != kBlankSeparator && text.ends_with(separator)) text = Trim(text.substr(0, text.size() - 1));
+  return text;
 }
 
 std::string_view PlainComment(std::string_view comment) {
@@ -88,6 +106,13 @@ std::optional<double> ParseCsvNumber(std::string_view field, char decimal_mark) 
   field = Trim(field);
   if (decimal_mark == '.') {
     if (const std::optional<double> number = ParseDouble(field)) return number;
+  }
+  // ="10" and '10 are texts of a spreadsheet, which are numbers all the same.
+  if (field.size() > 3 && field.starts_with("=\"") && field.ends_with('"'))
+    return ParseCsvNumber(field.substr(2, field.size() - 3), decimal_mark);
+  if (field.size() > 1 && field.front() == '\'') return ParseCsvNumber(field.substr(1), decimal_mark);
+  if (field.find("10") != std::string_view::npos) {
+    if (const std::optional<double> number = ParsePowerOfTen(field, decimal_mark)) return number;
   }
   // The minus sign of typesetters and of some spreadsheets.
   constexpr std::string_view kMinus = "\xe2\x88\x92";

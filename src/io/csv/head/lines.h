@@ -15,6 +15,8 @@ inline constexpr char kBlankSeparator = '\0';
 
 bool IsComment(std::string_view line);
 std::string_view CommentText(std::string_view line);
+// Without the separators by which a spreadsheet fills a line of words up to the number of columns.
+std::string_view WithoutEmptyCells(std::string_view text, char separator);
 
 // What the writer puts before a comment that would be read as a key of the written file.
 inline constexpr std::string_view kCommentKey = "comment: ";

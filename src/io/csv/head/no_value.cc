@@ -10,22 +10,139 @@
 namespace lobefit {
 namespace {
 
-constexpr std::array<std::string_view, 60> kWords = {
-    "",           "over",       "ovr",      "ovl",       "ovld",       "ol",           "o.l.",      "ovf",
-    "oor",        "overload",   "overflow", "overrange", "over range", "out of range", "sat",       "sat.",
-    "saturated",  "saturation", "n/a",      "n.a.",      "na",         "#n/a",         "#na",       "#div/0!",
-    "#value!",    "#ref!",      "#num!",    "#name?",    "#null!",     "nan(ind)",     "-nan(ind)", "nan(snan)",
-    "-nan(snan)", "-nan",       "<na>",     "null",      "none",       "nil",          "missing",   "?",
-    "x",          "n.d.",       "n.d",      "nd",        "bdl",        "lod",          "underflow", "under",
-    "undefined",  "invalid",    "bad",      "blocked",   "shadow",     "shadowed",     "masked",    "fail",
-    "failed",     "error",      "err",      "nul"};
+// In small letters; of letters beyond ASCII both sizes.
+constexpr auto kWords = std::to_array<std::string_view>({
+    // nothing, or nothing that is known
+    "",
+    "n/a",
+    "n.a.",
+    "na",
+    "#n/a",
+    "#na",
+    "<na>",
+    "n/d",
+    "n.d.",
+    "n.d",
+    "nd",
+    "n/m",
+    "nc",
+    "k.a.",
+    "k. a.",
+    "null",
+    "(null)",
+    "<null>",
+    "nul",
+    "none",
+    "nil",
+    "\\n",
+    "nan(ind)",
+    "-nan(ind)",
+    "nan(snan)",
+    "-nan(snan)",
+    "-nan",
+    "?",
+    "x",
+    "missing",
+    "empty",
+    "void",
+    "undefined",
+    "undef",
+    "unknown",
+    "invalid",
+    "bad",
+    "no data",
+    "nodata",
+    "no value",
+    "not available",
+    "not measured",
+    "nicht gemessen",
+    "non mesur\u00e9",
+    "non mesur\u00e9e",
+    "no medido",
+    "non misurato",
+    "skipped",
+    "rejected",
+    "fail",
+    "failed",
+    "error",
+    "err",
+    "fehler",
+    "erreur",
+    // too much
+    "over",
+    "ovr",
+    "ovl",
+    "ovld",
+    "ol",
+    "o.l.",
+    "ovf",
+    "oor",
+    "overload",
+    "overflow",
+    "overrange",
+    "over range",
+    "out of range",
+    "sat",
+    "sat.",
+    "saturated",
+    "saturation",
+    "clipped",
+    "\u00dcberlauf",
+    "\u00fcberlauf",
+    "ueberlauf",
+    "ges\u00e4ttigt",
+    "\u00dcbersteuert",
+    "\u00fcbersteuert",
+    "satur\u00e9",
+    "satur\u00e9e",
+    "hors plage",
+    "hors gamme",
+    "saturado",
+    "fuera de rango",
+    "saturato",
+    "fuori scala",
+    "\u221e",
+    "-\u221e",
+    "+\u221e",
+    // too little
+    "bdl",
+    "lod",
+    "underflow",
+    "under",
+    "noise",
+    "below noise",
+    "noise floor",
+    // nothing to be seen
+    "blocked",
+    "shadow",
+    "shadowed",
+    "masked",
+    "vignetted",
+    "occluded",
+    "obscured",
+    "obstructed",
+    "abgeschattet",
+});
+
+// "#VALUE!", "#WERT!", "#\u00a1DIV/0!", "#NV", "#N/D", "#N/A N/A" and "Err:502": what spreadsheets in any language write
+// for a formula that has no result.
+bool IsSpreadsheetError(std::string_view lower) {
+  if (lower.starts_with("err:")) return ParseDouble(lower.substr(4)).has_value();
+  if (lower.size() < 3 || lower.front() != '#') return false;
+  lower.remove_prefix(1);
+  for (const std::string_view mark : {"\u00a1", "\u00bf"}) {
+    if (lower.starts_with(mark)) lower.remove_prefix(mark.size());
+  }
+  return !lower.empty() &&
+         ((lower.front() >= 'a' && lower.front() <= 'z') || static_cast<unsigned char>(lower.front()) >= 0x80);
+}
 
 }  // namespace
 
 bool IsNoValueWord(std::string_view field) {
   std::string lower = ToLower(Trim(field));
   if (lower.size() > 2 && lower.front() == '(' && lower.back() == ')') lower = lower.substr(1, lower.size() - 2);
-  if (std::find(kWords.begin(), kWords.end(), lower) != kWords.end()) return true;
+  if (std::find(kWords.begin(), kWords.end(), lower) != kWords.end() || IsSpreadsheetError(lower)) return true;
   // "---", "***", "####" (a column too narrow), an en or em dash.
   if (lower.find_first_not_of("-") == std::string::npos || lower.find_first_not_of("*") == std::string::npos ||
       lower.find_first_not_of("#") == std::string::npos || lower.find_first_not_of("_") == std::string::npos ||
@@ -33,7 +150,7 @@ bool IsNoValueWord(std::string_view field) {
     return true;
   }
   // "1.#QNAN", "-1.#IND", "1.#INF" of older C libraries; "<0.001" and ">100", beyond what the instrument can tell.
-  if (lower.find(".#") != std::string::npos) return true;
+  if (lower.find(".#") != std::string::npos || lower.find(",#") != std::string::npos) return true;
   if (lower.front() != '<' && lower.front() != '>') return false;
   const std::string_view limit = Trim(std::string_view(lower).substr(lower.size() > 1 && lower[1] == '=' ? 2 : 1));
   return limit == "lod" || limit == "loq" || limit == "dl" || limit == "mdl" || ParseDouble(limit).has_value();

@@ -11,9 +11,10 @@
 namespace lobefit {
 namespace {
 
-// Takes a unit of a kind that is not known yet.
+// Takes a unit of a kind that is not known yet, or the same again ("rad, rad, 1/sr" of columns).
 bool TakeUnit(std::string_view unit, CsvKeys* keys) {
-  if (const std::optional<AngleUnit> angle = ParseAngleUnit(unit); angle && !keys->angle_unit) {
+  if (const std::optional<AngleUnit> angle = ParseAngleUnit(unit);
+      angle && keys->angle_unit.value_or(*angle) == *angle) {
     keys->angle_unit = angle;
   } else if (const std::optional<ValueScale> scale = ParseValueScale(unit); scale && !keys->value_scale) {
     keys->value_scale = scale;
@@ -55,6 +56,21 @@ std::vector<std::string_view> PlainWords(const std::string& lower) {
     while (!word.empty() && (word.front() == '(' || word.front() == '[')) word.remove_prefix(1);
   }
   return words;
+}
+
+// "unit-angles", "einheit-winkel", "unit-des-angles": of the key, as KeyName spells it.
+bool NamesUnitOfAngles(const std::string& name) {
+  static constexpr std::array<std::string_view, 9> kUnits = {"unit",   "units",  "einheit", "einheiten", "unite",
+                                                             "unites", "unidad", "unita",   "eenheid"};
+  static constexpr std::array<std::string_view, 12> kAngles = {"angle",    "angles",  "angular", "winkel",
+                                                               "angulo",   "angulos", "angolo",  "angoli",
+                                                               "angolare", "hoek",    "hoeken",  "angulaire"};
+  bool unit = false, angle = false;
+  for (const std::string_view part : Split(name, '-')) {
+    unit = unit || HoldsWord(kUnits, part);
+    angle = angle || HoldsWord(kAngles, part);
+  }
+  return unit && angle;
 }
 
 }  // namespace
@@ -141,6 +157,10 @@ bool ReadSentence(std::string_view text, CsvKeys* keys) {
   std::optional<AngleUnit> unit;
   bool angles = false;
   if (words.size() > kMostWords) return false;
+  if (words.size() == 1 && ParseAngleUnit(words[0]) && !keys->angle_unit) {
+    keys->angle_unit = ParseAngleUnit(words[0]);
+    return true;
+  }
   if (words.size() > 2 && words[words.size() - 2] == "in") {
     static constexpr std::array<std::string_view, 8> kBeside = {"all",      "are", "is",  "given",
                                                                 "measured", "the", "and", "stated"};
@@ -237,6 +257,10 @@ bool ReadMention(std::string_view text, CsvKeys* keys) {
 }
 
 bool ReadUnits(const std::string& name, std::string_view word, CsvKeys* keys) {
+  if (NamesUnitOfAngles(name) && ParseAngleUnit(word)) {
+    keys->angle_unit = ParseAngleUnit(word);
+    return true;
+  }
   CsvKeys all = *keys;
   if (name == "units" || name == "unit") {
     for (const std::string_view unit : Split(word, word.find(';') == std::string_view::npos ? ',' : ';')) {

@@ -17,18 +17,19 @@ constexpr std::array<std::string_view, 11> kAzimuthal = {"phi", "ph",     "azimu
                                                          "azi", "azimut", "azimutal", "varphi",    "acimut"};
 constexpr std::array<std::string_view, 8> kAngle = {"angle",  "angles", "winkel",    "angulo",
                                                     "angolo", "ang",    "direction", "plane"};
-constexpr std::array<std::string_view, 28> kLight = {
-    "i",         "in",      "inc",      "incident",     "incidence",    "incoming",     "incidencia",
-    "incidenza", "einfall", "einfalls", "illumination", "illum",        "illuminating", "light",
-    "source",    "src",     "lamp",     "laser",        "sun",          "solar",        "l",
-    "input",     "ill",     "0",        "incid",        "einfallender", "beleuchtung",  "illumin"};
-constexpr std::array<std::string_view, 51> kViewer = {
+constexpr std::array<std::string_view, 31> kLight = {
+    "i",         "in",      "inc",        "incident",     "incidence",    "incoming",     "incidencia",
+    "incidenza", "einfall", "einfalls",   "illumination", "illum",        "illuminating", "light",
+    "source",    "src",     "lamp",       "laser",        "sun",          "solar",        "l",
+    "input",     "ill",     "0",          "incid",        "einfallender", "beleuchtung",  "illumin",
+    "emitter",   "tx",      "transmitter"};
+constexpr std::array<std::string_view, 54> kViewer = {
     "o",    "out",      "outgoing",    "r",          "refl",      "reflected", "reflection", "reflexion",   "s",
     "scat", "scatter",  "scattered",   "scattering", "sca",       "v",         "view",       "viewing",     "viewer",
     "obs",  "observer", "observation", "observed",   "e",         "em",        "emission",   "emergence",   "emergent",
     "exit", "exitance", "exitant",     "exiting",    "detector",  "det",       "d",          "receiver",    "receive",
     "rec",  "sensor",   "camera",      "cam",        "output",    "ausfall",   "diffusion",  "riflessione", "rcv",
-    "rcvr", "recv",     "sens",        "reflechi",   "detection", "detected"};
+    "rcvr", "recv",     "sens",        "reflechi",   "detection", "detected",  "ref",        "reflectance", "rx"};
 constexpr std::array<std::string_view, 11> kRelative = {"relative", "rel",     "delta",   "diff", "difference", "d",
                                                         "between",  "relatif", "relativ", "dif",  "relatieve"};
 bool Has(const NameList& words, std::initializer_list<std::string_view> any) {

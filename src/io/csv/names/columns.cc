@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -17,7 +18,9 @@ struct Synonym {
   ColumnRole role;
   Coordinate coordinate = Coordinate::kThetaI;
 };
-constexpr std::array<Synonym, 54> kSynonyms = {{
+constexpr std::array<Synonym, 56> kSynonyms = {{
+    {"emi", ColumnRole::kCoordinate, Coordinate::kThetaO},
+    {"pha", ColumnRole::kCoordinate, Coordinate::kPhase},
     {"aoi", ColumnRole::kCoordinate, Coordinate::kThetaI},
     {"incidence", ColumnRole::kCoordinate, Coordinate::kThetaI},
     {"incident", ColumnRole::kCoordinate, Coordinate::kThetaI},
@@ -289,7 +292,51 @@ bool ClassifyFixed(const NameList& words, CsvColumn* column) {
 
 namespace {
 
+// "BRDF x 1000", "100*BRDF", "BRDF*1e3 (1/sr)": what a column holds the multiple of, and the factor.
+struct Product {
+  std::string of;
+  double factor = 1;
+};
+std::optional<Product> FindProduct(std::string_view name) {
+  for (const std::string_view mark : {std::string_view("*"), std::string_view("\u00d7"), std::string_view(" x ")}) {
+    const std::size_t at = name.find(mark);
+    if (at == std::string_view::npos || name.find(mark, at + mark.size()) != std::string_view::npos) continue;
+    const std::string_view left = Trim(name.substr(0, at)), right = Trim(name.substr(at + mark.size()));
+    for (const auto& [number, value] : {std::pair(left, right), std::pair(right, left)}) {
+      const std::size_t end = std::min(number.find_first_not_of("0123456789.eE+-^"), number.size());
+      const std::string_view rest = Trim(number.substr(end));
+      const bool power = number.starts_with("10^");
+      const std::optional<double> digits = ParseDouble(number.substr(power ? 3 : 0, end - (power ? 3 : 0)));
+      if (!digits || !(rest.empty() || rest.starts_with('(') || rest.starts_with('['))) continue;
+      // "10*log10(BRDF)" is a function.
+      const std::string lower = ToLower(value);
+      if (lower.empty() || lower.starts_with("log") || lower.starts_with("lg") || lower.starts_with("ln")) continue;
+      const double factor = power ? std::pow(10.0, *digits) : *digits;
+      if (factor > 0 && std::isfinite(factor)) return Product{std::string(value) + " " + std::string(rest), factor};
+    }
+  }
+  return std::nullopt;
+}
+
+// The column that holds `factor` times what `column` would.
+CsvColumn Multiplied(CsvColumn column, std::string_view name, double factor) {
+  column.name = std::string(Trim(name));
+  ValueScale scale = column.value_scale.value_or(ValueScale());
+  if (scale.form != ValueScale::Form::kLinear || scale.factor != 1) {
+    column.problem = "has a factor in its name and a scale in its unit; say by --value-scale what its numbers are in";
+    return column;
+  }
+  scale.factor = 1 / factor;
+  column.value_scale = scale;
+  return column;
+}
+
 CsvColumn ClassifyName(std::string_view name, Fixed fixed) {
+  if (const std::optional<Product> product = FindProduct(name)) {
+    CsvColumn of = ClassifyName(product->of, fixed);
+    if (of.role == ColumnRole::kValue || of.role == ColumnRole::kOtherValue || of.role == ColumnRole::kChannel)
+      return Multiplied(std::move(of), name, product->factor);
+  }
   CsvColumn column;
   column.name = std::string(Trim(name));
   NameWords split = SplitName(name);
@@ -365,6 +412,16 @@ void SetUnit(std::string_view unit, CsvColumn* column) {
     text = text.substr(1, text.size() - 2);
   column->unit = PlainUnit(text);
   if (column->foreign && column->unit == "grad") column->unit = "deg";
+  // "Scatter" in degrees is an angle.
+  if ((column->role == ColumnRole::kUnknown || column->role == ColumnRole::kOtherValue) &&
+      ParseAngleUnit(column->unit)) {
+    CsvColumn angle = ClassifyColumn(column->name + " (" + column->unit + ")");
+    if (angle.role == ColumnRole::kCoordinate) {
+      angle.name = column->name;
+      *column = std::move(angle);
+      return;
+    }
+  }
   ParseUnit(column);
 }
 

@@ -114,7 +114,7 @@ constexpr std::array<Translation, 27> kRussian = {{
 }};
 
 // Parts of Dutch, German and Scandinavian compounds, which are whole words too.
-constexpr std::array<Translation, 48> kParts = {{
+constexpr std::array<Translation, 58> kParts = {{
     {"einfalls", "incident"},
     {"einfall", "incident"},
     {"beleuchtungs", "illumination"},
@@ -163,9 +163,19 @@ constexpr std::array<Translation, 48> kParts = {{
     {"bolgelaengde", "wavelength"},
     {"indfalds", "incident"},
     {"innfalls", "incident"},
+    {"licht", ""},
+    {"quelle", "source"},
+    {"strahler", "source"},
+    {"reflektions", "reflected"},
+    {"inval", "incident"},
+    {"uitval", "exit"},
+    {"lichtbron", "source"},
+    {"belysnings", "illumination"},
+    {"mottagar", "receiver"},
+    {"grader", "deg"},
 }};
 
-constexpr std::array<Translation, 72> kForeignWords = {{
+constexpr std::array<Translation, 87> kForeignWords = {{
     {"rot", "red"},
     {"gruen", "green"},
     {"blau", "blue"},
@@ -238,6 +248,21 @@ constexpr std::array<Translation, 72> kForeignWords = {{
     {"valor", "value"},
     {"valore", "value"},
     {"valeur", "value"},
+    {"eclairement", "illumination"},
+    {"iluminacao", "illumination"},
+    {"oswietlenia", "illumination"},
+    {"osvetleni", "illumination"},
+    {"incidente", "incident"},
+    {"emetteur", "source"},
+    {"reflechie", "reflected"},
+    {"reflejado", "reflected"},
+    {"reflejada", "reflected"},
+    {"riflesso", "reflected"},
+    {"riflessa", "reflected"},
+    {"dispersado", "scatter"},
+    {"deteccion", "detector"},
+    {"rivelazione", "detector"},
+    {"detektora", "detector"},
 }};
 
 constexpr auto kForeignOf = [](const Translation& translation) { return translation.foreign; };

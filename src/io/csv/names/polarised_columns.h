@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +10,11 @@
 
 namespace lobefit {
 
-// "BRDF_s,BRDF_p", "f_TE,f_TM", "BRDF_ss,BRDF_sp,BRDF_ps,BRDF_pp".
+// "BRDF_s,BRDF_p", "s-BRDF,p-BRDF", "BRDF (s-pol),BRDF (p-pol)", "f_TE,f_TM", "BRDF_ss,BRDF_sp,BRDF_ps,BRDF_pp".
 struct PolarisedColumns {
   std::vector<std::size_t> columns;
-  std::vector<std::string> states;  // "s", one a column
+  std::vector<std::string> states;      // "s", one a column
+  std::optional<ValueKind> value_kind;  // of all of them, by their name
   // Where a column holds their mean ("BRDF_avg"), that is f_r of unpolarised light, and the others are not needed.
   bool mean_is_given = false;
 };

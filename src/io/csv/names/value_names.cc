@@ -30,7 +30,7 @@ struct ValueName {
   std::string_view name;
   std::optional<ValueKind> kind;
 };
-constexpr std::array<ValueName, 60> kValues = {{
+constexpr auto kValues = std::to_array<ValueName>({
     {"value", {}},
     {"values", {}},
     {"val", {}},
@@ -48,6 +48,7 @@ constexpr std::array<ValueName, 60> kValues = {{
     {"f_r_11", ValueKind::kBrdf},
     {"fr_l_over_e", ValueKind::kBrdf},
     {"luminance_coefficient", ValueKind::kBrdf},
+    {"luminance_coefficient_q", ValueKind::kBrdf},
     {"fdrb", ValueKind::kBrdf},
     {"frdb", ValueKind::kBrdf},
     {"bidirectional_reflectance_distribution_function", ValueKind::kBrdf},
@@ -81,9 +82,14 @@ constexpr std::array<ValueName, 60> kValues = {{
     {"pi_f_r", ValueKind::kReflectanceFactor},
     {"pi_fr", ValueKind::kReflectanceFactor},
     {"pi_brdf", ValueKind::kReflectanceFactor},
+    {"f_pi", ValueKind::kReflectanceFactor},
+    {"fr_pi", ValueKind::kReflectanceFactor},
+    {"f_r_pi", ValueKind::kReflectanceFactor},
+    {"brdf_pi", ValueKind::kReflectanceFactor},
     {"brf", ValueKind::kReflectanceFactor},
     {"hdrf", ValueKind::kReflectanceFactor},
     {"reflectance_factor", ValueKind::kReflectanceFactor},
+    {"refl_factor", ValueKind::kReflectanceFactor},
     {"bidirectional_reflectance_factor", ValueKind::kReflectanceFactor},
     {"radiance_factor", ValueKind::kReflectanceFactor},
     {"radiance_coefficient", ValueKind::kReflectanceFactor},
@@ -91,7 +97,7 @@ constexpr std::array<ValueName, 60> kValues = {{
     {"beta_radiance_factor", ValueKind::kReflectanceFactor},
     {"intensity", ValueKind::kIntensity},
     {"rt", ValueKind::kReading},
-}};
+});
 
 const ValueName* FindValue(std::string_view joined) {
   for (const ValueName& value : kValues) {
@@ -274,13 +280,16 @@ bool ClassifyValue(const NameWords& name, CsvColumn* column) {
   if (value != nullptr) {
     column->role = ColumnRole::kValue;
     column->value_kind = value->kind;
+  } else if (joined == "q" && (name.unit.starts_with("cd") || name.unit.starts_with("mcd"))) {
+    column->role = ColumnRole::kValue;  // of a road surface
+    column->value_kind = ValueKind::kBrdf;
   } else if (joined == "i_f" || joined == "radf") {
     column->role = ColumnRole::kValue;
     column->value_kind = ValueKind::kReflectanceCosI;
   } else if (joined == "reflectance" || joined == "reflectivity" || joined == "refl" || joined == "reflexion" ||
-             joined == "reflectances" || joined == "bdr" || joined == "scatter" || joined == "brdf_cos" ||
-             joined == "bsdf_cos" || joined == "f_cos" || joined == "fr_cos" || joined == "cos_brdf" ||
-             joined == "cosine_brdf" || joined == "cosine_weighted_brdf") {
+             joined == "reflectances" || joined == "bdr" || (joined == "scatter" && !ParseAngleUnit(name.unit)) ||
+             joined == "brdf_cos" || joined == "bsdf_cos" || joined == "f_cos" || joined == "fr_cos" ||
+             joined == "cos_brdf" || joined == "cosine_brdf" || joined == "cosine_weighted_brdf") {
     column->role = ColumnRole::kOtherValue;
   } else {
     return false;
@@ -317,18 +326,21 @@ std::size_t FindPossibleValue(const std::vector<CsvColumn>& columns) {
 
 bool ClassifyValueOfChannel(const NameList& words, CsvColumn* column) {
   if (words.size() < 2) return false;
-  std::optional<ValueKind> kind;
-  NameList rest;
-  if (NamesValue(words.front(), &kind)) {
-    rest.assign(words.begin() + 1, words.end());
-  } else if (NamesValue(words.back(), &kind)) {
-    rest.assign(words.begin(), words.end() - 1);
-  } else {
-    return false;
+  // "f_r 633" is no channel r of f.
+  for (std::size_t length = words.size() - 1; length > 0; --length) {
+    const auto count = static_cast<std::ptrdiff_t>(length);
+    for (const bool first : {true, false}) {
+      const NameList value =
+          first ? NameList(words.begin(), words.begin() + count) : NameList(words.end() - count, words.end());
+      const NameList rest =
+          first ? NameList(words.begin() + count, words.end()) : NameList(words.begin(), words.end() - count);
+      std::optional<ValueKind> kind;
+      if (!NamesValue(Joined(value), &kind) || !ClassifyChannel(rest, column)) continue;
+      column->value_kind = kind;
+      return true;
+    }
   }
-  if (!ClassifyChannel(rest, column)) return false;
-  column->value_kind = kind;
-  return true;
+  return false;
 }
 
 }  // namespace lobefit

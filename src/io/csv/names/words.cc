@@ -13,7 +13,13 @@ namespace lobefit {
 namespace {
 
 // Letters and signs beyond ASCII that names of columns are written with. Greek letters are words of their own.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 92> kLetters = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 97> kLetters = {{
+    // Signs of no width.
+    {"\u200b", ""},
+    {"\u200e", ""},
+    {"\u200f", ""},
+    {"\ufeff", ""},
+    {"\u00ad", ""},
     {"\xce\xb8", " theta "},
     {"\xce\x98", " theta "},
     {"\xcf\x91", " theta "},
@@ -143,6 +149,8 @@ bool IsUnitOfAnything(std::string_view unit) {
 bool IsBracketedUnit(std::string_view text) {
   const std::string plain = PlainUnit(text);
   if (plain.empty() || IsUnitOfAnything(plain)) return true;
+  // "(x 1000)" is no wavelength: some mean by it that the numbers are to be multiplied, some that they have been.
+  if (plain.size() > 1 && (plain[0] == 'x' || plain[0] == '*') && IsDigit(plain[1])) return true;
   if (plain == "-" || plain == "1" || plain == "m" || plain == "a" || plain == "w" || plain == "rel" || plain == "ppm")
     return true;
   return plain.find('/') != std::string::npos || plain.find('^') != std::string::npos;
@@ -280,6 +288,13 @@ NameWords SplitName(std::string_view name) {
       split.words[split.words.size() - 2] == "per") {
     split.unit = "1/sr";
     split.words.resize(split.words.size() - 2);
+  }
+  // "BRDF (633 nm) [1/sr]"
+  if (!split.unit.empty() && split.words.size() > 2 && ParseWavelengthUnit(split.words.back()) &&
+      ParseDouble(split.words[split.words.size() - 2])) {
+    const std::string unit = std::move(split.words.back());
+    split.words.pop_back();
+    split.words.back() += unit;
   }
   if (split.unit.empty() && split.words.size() > 1 && IsUnitOfAnything(split.words.back())) {
     split.unit = PlainUnit(split.words.back());

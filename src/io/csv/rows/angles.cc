@@ -94,15 +94,12 @@ class AngleFinder {
     return RadiansPerUnit(own && !options_.angle_unit ? *own : default_unit_);
   }
 
-  // Names that were taken for Western European text and are not understood: half of their letters have accents.
+  // Names that are not understood, with letters beyond ASCII: in another encoding they may be others.
   bool HasGarbledName() const {
     return std::any_of(columns_.begin(), columns_.end(), [](const CsvColumn& column) {
-      std::size_t accents = 0;
-      for (const char c : column.name) {
-        const auto byte = static_cast<unsigned char>(c);
-        accents += byte == 0xc2 || byte == 0xc3 ? 1 : 0;
-      }
-      return column.role == ColumnRole::kUnknown && accents > 2 && 3 * accents > column.name.size();
+      return column.role == ColumnRole::kUnknown && std::any_of(column.name.begin(), column.name.end(), [](char c) {
+               return static_cast<unsigned char>(c) >= 0x80;
+             });
     });
   }
 

@@ -222,7 +222,7 @@ class LayoutBuilder {
     for (std::size_t k = 0; k < polarised.columns.size(); ++k) {
       CsvColumn& column = columns_[polarised.columns[k]];
       column.role = polarised.mean_is_given ? ColumnRole::kIgnored : ColumnRole::kValue;
-      NamesValue(SplitName(column.name).words[0], &column.value_kind);
+      column.value_kind = polarised.value_kind;
       const std::string unit = std::exchange(column.unit, {});
       SetUnit(unit, &column);
       if (!polarised.mean_is_given) layout_.groups.push_back({{}, {polarised.columns[k]}, polarised.states[k]});
