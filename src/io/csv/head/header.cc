@@ -9,6 +9,7 @@
 #include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/conventions.h"
 #include "lobefit/io/csv/head/head_lines.h"
+#include "lobefit/io/csv/head/head_text.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/no_value.h"
 #include "lobefit/io/csv/head/side_tables.h"
@@ -19,29 +20,22 @@ namespace {
 
 using Fields = CsvFields;
 
-// A head is looked for in so much of the file, lines of comments not counted: a synthetic file has one for each number
-// of its truth.
-constexpr std::size_t kMostColumns = 65536;
-constexpr std::size_t kHeadLines = 400, kFirstRows = 60;
-
-struct Line {
-  std::size_t number = 0;
-  std::string_view text;
-  bool comment = false;
-};
+constexpr std::size_t kFirstRows = 60;
 
 class HeaderReader {
  public:
-  HeaderReader(const InputFile& file, const std::string& columns) : file_(file), mapping_(columns) {}
+  HeaderReader(const InputFile& file, const std::string& columns)
+      : file_(file), mapping_(columns), head_(ReadHeadText(file)), lines_(head_.lines), data_(head_.first_row) {
+    header_.separator = head_.separator;
+    header_.decimal_mark = head_.decimal_mark;
+    if (head_.decimal_mark == ',') header_.remarks.emplace_back("decimal commas were read");
+  }
 
   CsvHeader Read() {
-    Gather();
-    if (lines_.empty() || std::all_of(lines_.begin(), lines_.end(), [](const Line& line) { return line.comment; })) {
-      data_ = lines_.size();
+    if (std::all_of(lines_.begin(), lines_.end(), [](const HeadLine& line) { return line.comment; })) {
       ReadCommentKeys();
-      FailAtLine(file_, last_line_, "the file ends before a line of column names");
+      FailAtLine(file_, head_.last_line, "the file ends before a line of column names");
     }
-    FindData();
     // A mapping of the columns may stand in the file; the option is the word of whoever reads it.
     ReadCommentKeys();
     if (mapping_.empty()) mapping_ = ColumnMapping(header_.keys.columns);
@@ -62,137 +56,6 @@ class HeaderReader {
   }
 
  private:
-  void Gather() {
-    CsvLines lines(file_.bytes);
-    std::string_view text;
-    std::size_t bytes = 0, counted = 0;
-    while (counted < kHeadLines && bytes < kCsvHeadBytes && lines.Next(&text)) {
-      last_line_ = lines.line_number();
-      bytes += text.size();
-      if (Trim(text).empty()) continue;
-      if (lines_.empty() && ToLower(text).starts_with("sep=") && text.size() >= 5) {
-        stated_separator_ = text[4];
-        continue;
-      }
-      lines_.push_back({lines.line_number(), text, IsComment(text)});
-      if (lines_.back().comment) continue;
-      ++counted;
-      CheckColumns(lines_.back());
-    }
-  }
-
-  // Before any name is looked at.
-  void CheckColumns(const Line& line) const {
-    if (line.text.size() <= kMostColumns) return;
-    for (const char separator : {';', '\t', '|', ',', ' '}) {
-      const auto fields = static_cast<std::size_t>(std::count(line.text.begin(), line.text.end(), separator)) + 1;
-      if (fields > kMostColumns) {
-        FailAtLine(
-            file_, line.number,
-            "has " + std::to_string(fields) + " fields; at most " + std::to_string(kMostColumns) + " columns are read");
-      }
-    }
-  }
-
-  // Cells with units are numbers only where most lines that follow have such: so the names of a table may look.
-  bool FindData(char separator, bool units) {
-    std::size_t rows = 0, others = 0, first = 0;
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-      if (lines_[i].comment) continue;
-      Fields fields = SplitFields(lines_[i].text, separator);
-      std::vector<std::string> texts(units && fields.size() > 1 ? fields.size() : 0);  // of quotes within quotes
-      for (std::size_t k = 0; k < texts.size(); ++k) {
-        const std::string_view field = Unquoted(fields[k], &texts[k]);
-        if (ParseCell(field, '.') || ParseCell(field, ',')) fields[k] = NumberOfCell(field);
-      }
-      const bool is_row =
-          fields.size() >= 2 && IsData(fields) && !(separator == ',' && HasCommasWithinNumbers(lines_[i].text, fields));
-      if (is_row && rows++ == 0) first = i;
-      if (is_row && !units) break;
-      others += !is_row && rows > 0 ? 1 : 0;
-    }
-    if (rows == 0 || others >= rows) return false;
-    header_.separator = separator;
-    data_ = first;
-    TakeRowsBefore();
-    FindDecimalMark();
-    return true;
-  }
-
-  // Above the first row of bare numbers others may stand whose cells have units or marks in place of values.
-  void TakeRowsBefore() {
-    const std::size_t fields = SplitFields(lines_[data_].text, header_.separator).size();
-    for (std::size_t i = data_; i-- > 0;) {
-      if (lines_[i].comment) continue;
-      const Fields row = SplitFields(lines_[i].text, header_.separator);
-      std::size_t numbers = 0;
-      std::string storage;
-      const bool is_row = row.size() == fields && std::all_of(row.begin(), row.end(), [&](std::string_view raw) {
-                            const std::string_view field = Unquoted(raw, &storage);
-                            const bool number = IsNumeric(field) || ParseCell(field, '.') || ParseCell(field, ',');
-                            numbers += number ? 1 : 0;
-                            return number || IsNoValueWord(field);
-                          });
-      const bool led = is_row && IsNumeric(NumberOfCell(Unquoted(row[0], &storage)));
-      if (!led || numbers < 2) return;
-      data_ = i;
-    }
-  }
-
-  // The first row of data, and the separator by which it is one.
-  void FindData() {
-    std::vector<char> candidates = {';', '\t', '|', ','};
-    // A line that Excel writes may name a separator that the file, saved again, does not have.
-    if (stated_separator_) candidates.insert(candidates.begin(), *stated_separator_);
-    for (const char candidate : candidates) {
-      if (FindData(candidate, false)) return;
-    }
-    // "10 deg;20 deg;0.5" is no row of numbers between blanks.
-    for (const char candidate : candidates) {
-      if (FindData(candidate, true)) return;
-    }
-    if (FindData(kBlankSeparator, false)) return;
-    data_ = lines_.size();
-    const Line& first = *std::find_if(lines_.begin(), lines_.end(), [](const Line& line) { return !line.comment; });
-    for (const char candidate : {';', '\t', '|', ','}) {
-      if (first.text.find(candidate) == std::string_view::npos) continue;
-      header_.separator = candidate;
-      return;
-    }
-    header_.separator = kBlankSeparator;
-  }
-
-  void FindDecimalMark() {
-    std::size_t commas = 0, points = 0;
-    std::string storage;
-    for (std::size_t i = data_; i < lines_.size(); ++i) {
-      if (lines_[i].comment) continue;
-      for (const std::string_view raw : SplitFields(lines_[i].text, header_.separator)) {
-        const std::string_view cell = Unquoted(raw, &storage), field = NumberOfCell(cell);
-        if (IsNoValueWord(cell)) continue;  // "1,#QNAN"
-        if (HasThousandsSeparator(field)) {
-          FailAtLine(file_, lines_[i].number,
-                     "'" + Excerpt(field) +
-                         "' has both a comma and a point; write numbers without separators between thousands");
-        }
-        if (HasDecimalComma(field)) {
-          ++commas;
-        } else if (field.find('.') != std::string_view::npos && ParseDouble(field)) {
-          ++points;
-        }
-      }
-    }
-    if (commas > 0 && points > 0) {
-      FailAtLine(file_, lines_[data_].number,
-                 "some numbers have a decimal comma and some a decimal point, or commas separate thousands; write all "
-                 "with points");
-    }
-    if (commas > 0) {
-      header_.decimal_mark = ',';
-      header_.remarks.emplace_back("decimal commas were read");
-    }
-  }
-
   bool SetNames(std::size_t at, std::vector<CsvColumn> columns) {
     header_.columns = std::move(columns);
     header_.names_line = lines_[at].number;
@@ -510,9 +373,10 @@ class HeaderReader {
   const InputFile& file_;
   ColumnMapping mapping_;
   CsvHeader header_;
-  std::vector<Line> lines_;
-  std::optional<char> stated_separator_;
-  std::size_t data_ = 0, names_ = static_cast<std::size_t>(-1), last_line_ = 1;
+  const HeadText head_;
+  const std::vector<HeadLine>& lines_;
+  std::size_t data_;  // the first row's, in lines_
+  std::size_t names_ = static_cast<std::size_t>(-1);
   bool may_be_side_tables_ = false;
   std::size_t row_fields_ = 0;  // of the first row
 };

@@ -16,9 +16,6 @@
 
 namespace lobefit {
 
-// A head ends within so much of the file.
-inline constexpr std::size_t kCsvHeadBytes = std::size_t{1} << 20;
-
 struct CsvHeader {
   std::vector<CsvColumn> columns;
   std::vector<CellForm> cells;         // one a written column, or none where all cells are bare numbers
