@@ -6,8 +6,8 @@ extern "C" {
 
 // Read by jemalloc as the program starts; the environment's MALLOC_CONF goes over it. An arena a processor, of which
 // there would be four, and freed pages kept for 2 s, not 10: two automatic fits of full tables at a time take 368 MB in
-// place of 398 to 408 MB. Freed arrays above 8 MB go back to the system at once, which is jemalloc's default: kept, they
-// were 180 MB more for 800 channels.
+// place of 398 to 408 MB. Freed arrays above 8 MB go back to the system at once, which is jemalloc's default: kept,
+// they were 180 MB more for 800 channels.
 extern const char* malloc_conf;
 const char* malloc_conf = "thp:always,percpu_arena:percpu,dirty_decay_ms:2000";
 

@@ -89,9 +89,8 @@ std::string DescribeMarkup(std::string_view head) {
   if (has("<scene ") || has("<materialx"))
     return "is a renderer's material, not a measurement; `lobefit compare FILE --with` sets it beside one";
   if (has("\"lobefit material\""))
-    return "is a material document, not a measurement; `lobefit compare FILE --with` sets it beside one, `lobefit "
-           "synth` "
-           "makes a measurement of it";
+    return "is a material document, not a measurement; `lobefit compare FILE --with` sets it beside one, "
+           "`lobefit synth` makes a measurement of it";
   return "";
 }
 

@@ -92,8 +92,8 @@ SelTable ReadSel(const JsonReader& reader, std::size_t channels) {
 
 namespace {
 
-// Values that a model can be evaluated at: widths wider and narrower than the bounds of a fit, as slope coordinates have
-// them, and reflectances that a recipe let go beyond 1.
+// Values that a model can be evaluated at: widths wider and narrower than the bounds of a fit, as slope coordinates
+// have them, and reflectances that a recipe let go beyond 1.
 void CheckRange(const JsonReader& reader, const Parameter& parameter, double value) {
   constexpr double kNarrowest = 1e-10, kWidest = 10;
   const bool is_shape = parameter.group == ParameterGroup::kShape;

@@ -17,9 +17,9 @@ constexpr double kDegree = kPi / 180;
 // resolution of a kept direction counts as that; kept directions within the resolution of each other, and those that a
 // chain of such pairs joins, are one.
 //
-// Kept directions stand in the cells of a grid over x and y: what is near on the sphere is near there, above the horizon
-// or below. Cells are twice the resolution wide, so that what is within it lies in at most four. The grid repeats itself
-// where it would be large: what a cell holds is asked for its distance anyway.
+// Kept directions stand in the cells of a grid over x and y: what is near on the sphere is near there, above the
+// horizon or below. Cells are twice the resolution wide, so that what is within it lies in at most four. The grid
+// repeats itself where it would be large: what a cell holds is asked for its distance anyway.
 class DirectionMerger {
  public:
   explicit DirectionMerger(double resolution)

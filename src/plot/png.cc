@@ -16,8 +16,8 @@
 namespace lobefit {
 namespace {
 
-// Rows are packed in bands of about so many bytes, each by itself: bands may be packed at the same time, and the file is
-// the same for any number of threads. Of a page in 40 bands that costs 0.1 % of the file.
+// Rows are packed in bands of about so many bytes, each by itself: bands may be packed at the same time, and the file
+// is the same for any number of threads. Of a page in 40 bands that costs 0.1 % of the file.
 constexpr std::size_t kBandBytes = 1 << 20;
 // Of a small picture clearing zlib's memory would take longer than packing, and looking for more than runs takes twice
 // the time for a fiftieth of the bytes.

@@ -1,5 +1,5 @@
-// PNG files, packed by zlib on several threads: libpng packs on one, and opencv_imgcodecs would add 58 ms to every start
-// of the program.
+// PNG files, packed by zlib on several threads: libpng packs on one, and opencv_imgcodecs would add 58 ms to every
+// start of the program.
 #pragma once
 
 #include <filesystem>

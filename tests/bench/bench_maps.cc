@@ -166,8 +166,8 @@ int Search(const char* path, std::size_t step) {
   return 0;
 }
 
-// Mean error of the normals of the half of hills' texels that is surest, over that of all, by the stated error and by the
-// doubt, where values are made otherwise than the model has them.
+// Mean error of the normals of the half of hills' texels that is surest, over that of all, by the stated error and by
+// the doubt, where values are made otherwise than the model has them.
 int Doubts() {
   const std::size_t size = 64;
   const std::vector<Vec3> lights = DomeLights(96, 60 * kPi / 180);

@@ -1,8 +1,8 @@
 // What the richer models cost, as ratios of one run: a pass of value, gradient and Gram matrix of each kind against one
 // GGX lobe's, of a lobe through an instrument's discs against the same lobe at a point, the masking table of a profile
 // made in two ways, and a descent of a free profile with a free Fresnel curve against one AutoDiffCostFunction a sample
-// with the same model. Tables in Markdown. Exit code 1 where a pass through one disc takes more than 6 times the time of
-// a pass without, through both discs 25 times.
+// with the same model. Tables in Markdown. Exit code 1 where a pass through one disc takes more than 6 times the time
+// of a pass without, through both discs 25 times.
 //   bench_models [--quick] [passes|apertures|tables|autodiff]...
 #include <algorithm>
 #include <chrono>
@@ -323,8 +323,8 @@ void AgainstAutoDiff(double step_deg) {
              fast, solution.iterations, slow / fast, slow_step / fast_step, cost / summary.final_cost);
 }
 
-// The masking table of a profile, which every step of a descent makes anew, against the sums over quadrature points from
-// which its nodes come where the matrix does not resolve the profile.
+// The masking table of a profile, which every step of a descent makes anew, against the sums over quadrature points
+// from which its nodes come where the matrix does not resolve the profile.
 void Tables(int rounds) {
   const auto spline = std::make_shared<const ProfileSpline>(std::vector<double>{0, 1, 2, 4, 8, 16, 32});
   const auto grid = std::make_shared<const ProfileGrid>(spline);

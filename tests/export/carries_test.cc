@@ -182,8 +182,8 @@ TEST(Refit, SaysThatItsFileHasNoCoat) {
   std::filesystem::remove_all(options.folder);
 }
 
-// Radiance takes a tensor tree's cells as they are: cells of 4 degrees leave little of a lobe of 3 degrees' width, which
-// interpolation between them would hide.
+// Radiance takes a tensor tree's cells as they are: cells of 4 degrees leave little of a lobe of 3 degrees' width,
+// which interpolation between them would hide.
 TEST(ErrorMeter, TakesATensorTreeWithoutInterpolation) {
   SyntheticCase narrow = test::Plastic();
   narrow.values[0] = narrow.values[1] = {0.045};

@@ -190,8 +190,8 @@ TEST_F(TargetModel, MaterialXCoat) {
       3e-3, 0.1);
 }
 
-// The same as the coat of an OpenPBR surface, over a metal and over a dielectric: it makes the lobe below rougher and the
-// dielectric's index count relative to its own, which the numbers undo. Darkening is off.
+// The same as the coat of an OpenPBR surface, over a metal and over a dielectric: it makes the lobe below rougher and
+// the dielectric's index count relative to its own, which the numbers undo. Darkening is off.
 TEST_F(TargetModel, OpenPbrCoat) {
   const double ior = 1.6, alpha = 0.3, coat_alpha = 0.1, f0 = std::pow((ior - 1) / (ior + 1), 2);
   const std::vector<double> tau = {0, 0.1, 0.3}, rho = {0.3, 0.2, 0.1};

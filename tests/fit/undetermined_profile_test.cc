@@ -110,9 +110,9 @@ TEST(UndeterminedProfile, NothingIsNamedWhereAllKnotsAreReached) {
   EXPECT_TRUE(Named(CheckedFit(DefaultRecipe(truth.model, "test"), {}, &measurement)).empty());
 }
 
-// By definition those that begin beyond the half vectors, and those whose variance from samples and prior is more than half
-// of the prior's, by the whole inverse; the program inverts by blocks. Noisy samples within 1.2 alphas tell little of what
-// begins at 1 or less.
+// By definition those that begin beyond the half vectors, and those whose variance from samples and prior is more than
+// half of the prior's, by the whole inverse; the program inverts by blocks. Noisy samples within 1.2 alphas tell little
+// of what begins at 1 or less.
 class OfManyChannels : public testing::TestWithParam<std::size_t> {};
 TEST_P(OfManyChannels, AreThoseOfTheWholeInverse) {
   const SyntheticCase truth = ProfileWithKnots(kFarKnots, GetParam());

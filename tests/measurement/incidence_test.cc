@@ -52,8 +52,8 @@ TEST(GroupByIncidence, AzimuthsOfMinusPiAndPiAreOneDirection) {
   EXPECT_EQ(GroupByIncidence(Lights({{40, 179.99}, {40, -179.99}}, 0, 3)).wi.size(), 1U);
 }
 
-// Every half degree of polar angle and 12 azimuths, up to grazing, jittered: as fine as the smallest resolution allows, so
-// that a grid of cells that repeats itself holds many directions in one.
+// Every half degree of polar angle and 12 azimuths, up to grazing, jittered: as fine as the smallest resolution allows,
+// so that a grid of cells that repeats itself holds many directions in one.
 TEST(GroupByIncidence, FindsTheLightsOfAHemisphereWhateverTheResolution) {
   std::vector<std::pair<double, double>> lights;
   for (int t = 1; t < 180; ++t) {

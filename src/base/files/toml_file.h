@@ -35,8 +35,8 @@ struct TomlFile {
     }
   }
 
-  // toml++ descends into a dotted key part by part: from some 40 000 parts on its stack ends the program. A key ends with
-  // its line.
+  // toml++ descends into a dotted key part by part: from some 40 000 parts on its stack ends the program. A key ends
+  // with its line.
   void CheckKeyLengths(std::string_view text) const {
     constexpr std::ptrdiff_t kMostPoints = 10000;
     std::size_t number = 1;

@@ -117,8 +117,8 @@ class PageColumns {
   }
 
   // Columns, rows by column, half intervals by place of the column, and what is drawn against the width at first: the
-  // reflectance that most rows have, which with it says most of a material, or where fewer than half have one the error,
-  // which all have.
+  // reflectance that most rows have, which with it says most of a material, or where fewer than half have one the
+  // error, which all have.
   Json ToJson() && {
     Json columns = Json::array(), errors = Json::object();
     std::string scatter_y;

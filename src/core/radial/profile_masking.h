@@ -88,8 +88,8 @@ class ProfileGrid {
 };
 
 // The table of one profile: quintic Hermite interpolation of M, M' = -T, M'' = P2 and of their derivatives by q.
-// Immutable after construction (a tenth of a millisecond); one serves all samples of an iteration. Absolute error of sigma /
-// sqrt(q) below 1e-12, of its derivatives 1e-10.
+// Immutable after construction (a tenth of a millisecond); one serves all samples of an iteration. Absolute error of
+// sigma / sqrt(q) below 1e-12, of its derivatives 1e-10.
 class ProfileMasking {
  public:
   ProfileMasking(std::shared_ptr<const ProfileGrid> grid, Profile profile);

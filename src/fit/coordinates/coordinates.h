@@ -38,8 +38,8 @@ struct Coordinate {
   bool observed = false;
 };
 
-// How near a bound a coordinate lies on it: solvers end there to rounding. Of wide ranges that of amplitudes (factors up
-// to 1e6) is no measure: the scatter of a mirror has a factor of 1e-5.
+// How near a bound a coordinate lies on it: solvers end there to rounding. Of wide ranges that of amplitudes (factors
+// up to 1e6) is no measure: the scatter of a mirror has a factor of 1e-5.
 inline double BoundSlack(const Coordinate& coordinate) {
   return 1e-9 * std::min(1.0, coordinate.high - coordinate.low);
 }

@@ -41,9 +41,9 @@ bool BySeries(const WhitenedMatrix& curvature, const Eigen::MatrixXd& vectors, E
 
 double InverseRoot(double eigenvalue) { return 1 - eigenvalue > kAlone ? 1 / std::sqrt(1 - eigenvalue) : 0.0; }
 
-// The same of one vector in the space of its powers [Lanczos 1950, with all earlier directions taken out again]: where a
-// cluster has nearly all the say in some of thousands of coordinates the series is endless, and eigenvectors of all take
-// minutes. False where the answer still moves by more than a billionth after kMostPowers.
+// The same of one vector in the space of its powers [Lanczos 1950, with all earlier directions taken out again]: where
+// a cluster has nearly all the say in some of thousands of coordinates the series is endless, and eigenvectors of all
+// take minutes. False where the answer still moves by more than a billionth after kMostPowers.
 bool ByPowers(const WhitenedMatrix& curvature, const Eigen::VectorXd& vector, Eigen::MatrixXd* result) {
   constexpr Eigen::Index kMostPowers = 400, kEvery = 20;
   const double length = vector.norm();

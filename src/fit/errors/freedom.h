@@ -29,8 +29,8 @@ using SparseColumns = Eigen::SparseMatrix<double>;
 // samples where all count alike. Several channels of a sample are taken as one.
 //
 // Of clusters, CR2 (clusters.h) as Bell and McCaffrey [2002], with the square of the trace over the trace of the square
-// as in Imbens and Kolesar [2016]: cluster g's part is (y_g^T s_g - b_g^T s)^2 with s_g its own score and s that of all,
-// y_g = (1 - curvature_g)^(-1/2) z and b_g = curvature_g y_g, and the covariance of two parts is
+// as in Imbens and Kolesar [2016]: cluster g's part is (y_g^T s_g - b_g^T s)^2 with s_g its own score and s that of
+// all, y_g = (1 - curvature_g)^(-1/2) z and b_g = curvature_g y_g, and the covariance of two parts is
 //   V_gk = [g = k] y_g^T S_g y_g - b_k^T S_g y_g - b_g^T S_k y_k + b_g^T S b_k,
 // S_g the cluster's scatter, S that of all. G equal clusters have G - 1 degrees of freedom. V_gg^2 is lessened by two
 // thirds of its samples' w^2, by which the square of an estimated scatter is too large; more than G are never had.
@@ -54,8 +54,8 @@ class FreedomTally {
   // A number each; infinite where no sample has a part in it.
   Eigen::VectorXd OfSamples() const;
   // A number each; NaN where no cluster has a part in it. `scatter`: that of all. Up to 100 clusters exactly;
-  // of more, where it decides nothing, with each cluster's curvature taken as a multiple of the unit matrix and with the
-  // part of noise of one variance in what two clusters share.
+  // of more, where it decides nothing, with each cluster's curvature taken as a multiple of the unit matrix and with
+  // the part of noise of one variance in what two clusters share.
   Eigen::VectorXd OfClusters(const WhitenedMatrix& scatter) const;
 
  private:
@@ -69,8 +69,8 @@ class FreedomTally {
   double per_unit_;
   RowMajorMatrix dense_;              // `numbers` where few channels leave little of it zero
   Eigen::ArrayXd squares_, fourths_;  // sums over samples of w and w^2
-  // With h = z^T curvature z the cluster's share in the variance of a number under noise of one variance, sums of h, and
-  // without `exact_` of e = h^2 / (1 - h) and e^2, with h as a part of z^T z.
+  // With h = z^T curvature z the cluster's share in the variance of a number under noise of one variance, sums of h,
+  // and without `exact_` of e = h^2 / (1 - h) and e^2, with h as a part of z^T z.
   Eigen::ArrayXd h_, e_, e2_;
   Eigen::ArrayXd squares_2_;  // without `exact_`: sum over clusters of the square of its w
   struct Influence {

@@ -26,9 +26,9 @@ class LeaveOneOut {
 
   // Of each sample a = (1 - its part of the curvature)^-1 times its gradient: padded samples x m.
   //
-  // With k and o the border's and the own entries of a channel's row, the curvature of a sample is the sum over channels
-  // of (k, o)^T (k, o) and c q q^T with q the sum of k r. Its own part is inverted channel by channel; what is left is
-  // the border's,
+  // With k and o the border's and the own entries of a channel's row, the curvature of a sample is the sum over
+  // channels of (k, o)^T (k, o) and c q q^T with q the sum of k r. Its own part is inverted channel by channel; what is
+  // left is the border's,
   //   (1 - sum of w k k^T - c q q^T) y = sum of w r k,   w = 1 / (1 - o.o),   and a_own = w (r + k.y) o,
   // whose series all samples of the piece take together; those that decide much of the fit are solved for one by one.
   const Eigen::MatrixXd& Evaluate(const WhitenedPiece& piece);

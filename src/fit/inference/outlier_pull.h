@@ -24,10 +24,10 @@ struct OutlierPull {
   double errors() const { return std::fabs(above) + std::fabs(below); }
 };
 
-// To first order a sample moves the solver's coordinates by -A^-1 rho' J^T r (Bread has A). Intervals hold where outliers
-// pull upwards and downwards alike in the mean. One fit cannot tell: of n of them the two sides differ by chance as the
-// root of n, and by n times their asymmetry, and where they pull most they are most of the standard error. So what is
-// told is how much there is that may be uneven.
+// To first order a sample moves the solver's coordinates by -A^-1 rho' J^T r (Bread has A). Intervals hold where
+// outliers pull upwards and downwards alike in the mean. One fit cannot tell: of n of them the two sides differ by
+// chance as the root of n, and by n times their asymmetry, and where they pull most they are most of the standard
+// error. So what is told is how much there is that may be uneven.
 //
 // `noise` is that of the readings, without the outliers (EstimateNoise). Nothing without a loss or without outliers.
 std::optional<OutlierPull> PullOfOutliers(const Problem& problem, const Layout& layout, const std::vector<double>& u,

@@ -41,8 +41,8 @@ Eigen::MatrixXd TimesInverse(const Eigen::MatrixXd& rows, const ArrowMatrix& hes
   if (rows.cols() == 0) return rows;
   const Eigen::VectorXd scale = hessian.Diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 1.0; });
   constexpr double kHair = 1e-10;
-  // A factorisation keeps the zeros of many channels, where an inverse took a sixth of a fit with 800 of them. A hair of
-  // curvature holds what is not determined.
+  // A factorisation keeps the zeros of many channels, where an inverse took a sixth of a fit with 800 of them. A hair
+  // of curvature holds what is not determined.
   constexpr Eigen::Index kMostDecomposed = 200;
   if (rows.cols() > kMostDecomposed) {
     Eigen::SparseMatrix<double> scaled = Sparse(hessian, rows.cols());

@@ -32,9 +32,9 @@ struct DescentOptions {
   // Least damping of a coordinate, relative to the largest diagonal entry of J^T J: for coordinates that nothing may
   // depend on.
   double damping_floor = 0;
-  // Where a plain step is refused at a kink of the cost, one along it is tried (kink.h), a pass more. Without, a descent
-  // creeps there by ever shorter steps; with it, it ends on the kink, which need not be the deepest place near by, so
-  // that it is for what has crept. Dense steps only.
+  // Where a plain step is refused at a kink of the cost, one along it is tried (kink.h), a pass more. Without, a
+  // descent creeps there by ever shorter steps; with it, it ends on the kink, which need not be the deepest place near
+  // by, so that it is for what has crept. Dense steps only.
   bool along_kinks = false;
 };
 

@@ -10,9 +10,9 @@ namespace {
 // end.
 constexpr int kStepsWithin = 12;
 constexpr double kShareOfTolerance = 0.3;
-// Where the whole's cost does not fall the stand-in promised too much: its next round is damped, as Marquardt's steps, and
-// those after it ever less. Without any from the third on, 3 of 8 rounds failed on a full table of aluminium, 4 of 15 and
-// 7 of 20 on those of teflon and a green fabric; so 2 of 6, 2 of 13 and 3 of 12.
+// Where the whole's cost does not fall the stand-in promised too much: its next round is damped, as Marquardt's steps,
+// and those after it ever less. Without any from the third on, 3 of 8 rounds failed on a full table of aluminium, 4 of
+// 15 and 7 of 20 on those of teflon and a green fabric; so 2 of 6, 2 of 13 and 3 of 12.
 constexpr double kFirstDamping = 0.1, kMostDamping = 1e3, kLeastDamping = 1e-4;
 // A round that gains no more than this share of the cost is the last where the conditions of a minimum hold: on full
 // tables of a gold layer, a black phenolic and a marble 12 to 18 more gained 1e-4 together.

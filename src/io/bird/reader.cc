@@ -132,7 +132,8 @@ class BirdReader {
     return RadiansPerUnit(*known);
   }
 
-  // What a number of uncertainty is to be multiplied by where it is relative to the value; nothing where it is absolute.
+  // What a number of uncertainty is to be multiplied by where it is relative to the value; nothing where it is
+  // absolute.
   std::optional<double> RelativeUncertainty() const {
     const std::string unit = PlainUnit(sigma_unit_);
     if (unit == "%" || unit == "percent") return 0.01;

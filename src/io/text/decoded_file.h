@@ -13,9 +13,9 @@ namespace lobefit {
 class DecodedFile {
  public:
   // Reads the file. gzip is unpacked; UTF-16 (with a byte order mark, or recognised by its zeros) becomes UTF-8, as
-  // does text that is no UTF-8 and is then taken for Windows-1252; a lone CR ends a line, and zeros or a Ctrl-Z at the end of a
-  // text are none of it. Other files stay as they are.
-  // Throws InputError for a file that cannot be read, is damaged, or unpacks to more than 2 GiB.
+  // does text that is no UTF-8 and is then taken for Windows-1252; a lone CR ends a line, and zeros or a Ctrl-Z at the
+  // end of a text are none of it. Other files stay as they are. Throws InputError for a file that cannot be read, is
+  // damaged, or unpacks to more than 2 GiB.
   explicit DecodedFile(const std::filesystem::path& path);
 
   std::string_view bytes() const { return decoded_.empty() ? rest_ : std::string_view(decoded_); }

@@ -158,8 +158,8 @@ double ValueScale::Slope(double number) const {
 
 std::string PlainUnit(std::string_view unit) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 31> kSigns = {{
-      // The degree sign of UTF-8 taken for Windows-1252, of DOS and of old Macs taken for it, and what stands for a sign
-      // that was lost.
+      // The degree sign of UTF-8 taken for Windows-1252, of DOS and of old Macs taken for it, and what stands for a
+      // sign that was lost.
       {"\u00c2\u00b0", "deg"},
       {"\u00f8", "deg"},
       {"\u00a1", "deg"},

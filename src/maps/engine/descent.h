@@ -27,8 +27,8 @@ struct MapDescent {
 bool IsRough(double cost, double loss, std::size_t lights);
 
 // Ends where the step that remains promises less than `tolerance` of the cost; not converged where it comes to where
-// `known` (unless null) is the end or, with residuals well below the loss's width, lies down the slope, or where `known`
-// is better by much more than the steps still promise. Domain: start within the bounds.
+// `known` (unless null) is the end or, with residuals well below the loss's width, lies down the slope, or where
+// `known` is better by much more than the steps still promise. Domain: start within the bounds.
 inline constexpr double kFineTolerance = 1e-10, kCoarseTolerance = 3e-3;
 MapDescent Descend(const MapModel& model, const TexelData& data, const MapPoint& start, const MapBounds& bounds,
                    double loss, TexelObjective* objective, double tolerance = kFineTolerance,

@@ -94,8 +94,8 @@ inline constexpr double kJackknife = 0.85;
 void MovesOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* moved);
 // pull[j][l], j < 2: by how much unknown j moves where the values of light l are off by all of the prediction.
 void PullsOf(const LightTerms& terms, const RowArrays& arrays, const MapMatrix& inverse, double* const* pull);
-// The quadratic form, of left and of right together, of a covariance between lights that is 1 at the same light; `share`
-// of it falls smoothly with their angle, as bumps ((1 + cos) / 2)^8 about the centres overlap.
+// The quadratic form, of left and of right together, of a covariance between lights that is 1 at the same light;
+// `share` of it falls smoothly with their angle, as bumps ((1 + cos) / 2)^8 about the centres overlap.
 using BumpCenters = std::array<Vec3, 16>;
 double SmoothSquares(const BumpCenters& centers, double share, const LightArrays& lights, const double* left,
                      const double* right);

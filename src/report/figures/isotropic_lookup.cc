@@ -44,7 +44,8 @@ IsotropicLookup::IsotropicLookup(const Measurement& measurement) : channels_(mea
   constexpr std::size_t kTaken = 500000;
   const std::size_t step = 1 + samples.size() / kTaken;
   for (std::size_t i = 0; i < samples.size(); i += step) {
-    // Samples of a table lie on the bounds of cells: not by the faster formula, which would move them about by rounding.
+    // Samples of a table lie on the bounds of cells: not by the faster formula, which would move them about by
+    // rounding.
     const Coordinates c = CoordinatesOf(ToHalfDifference(samples.wi(i), samples.wo(i)));
     const std::size_t cell =
         (Cell(c.h, kCells[0]) * kCells[1] + Cell(c.d, kCells[1])) * kCells[2] + Cell(c.phi, kCells[2]);

@@ -1,9 +1,9 @@
 // Shaders in OpenGL ES 3 without a window, on Mesa's llvmpipe where there is no graphics card:
 //   gles VERTEX FRAGMENT [UNIFORMS] < rows
 // One pixel a row, which begins with theta_i, phi_i, theta_o, phi_o in degrees. The surface is the plane z = 0 with
-// tangent x. A fragment shader has `uniform vec3 light, viewer` and gives f_r, or it is MaterialX', under one directional
-// light, and gives f_r times the cosine of the light. UNIFORMS: type, name, value, a line each. Prints f_r, one line a
-// row; the renderer's name on standard error.
+// tangent x. A fragment shader has `uniform vec3 light, viewer` and gives f_r, or it is MaterialX', under one
+// directional light, and gives f_r times the cosine of the light. UNIFORMS: type, name, value, a line each. Prints f_r,
+// one line a row; the renderer's name on standard error.
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -2,8 +2,9 @@
 //   pbrt SCENE TURN < rows
 // SCENE is what stands after WorldBegin: `Include "NAME.pbrt"` or a Material of a measured file; file names count from
 // the current folder, as they do from a main scene there. Each row begins with theta_i, phi_i, theta_o, phi_o in
-// degrees. TURN: of the mesh's texture coordinates about the normal, in degrees. Prints the f_r of pbrt's BSDF as linear sRGB under D65, one line a row. A mixture, of which pbrt chooses one
-// material at random, is the sum of its parts by their shares.
+// degrees. TURN: of the mesh's texture coordinates about the normal, in degrees. Prints the f_r of pbrt's BSDF as
+// linear sRGB under D65, one line a row. A mixture, of which pbrt chooses one material at random, is the sum of its
+// parts by their shares.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

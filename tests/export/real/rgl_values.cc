@@ -1,7 +1,7 @@
 // lobefit's own reading of an RGL file at random pairs of directions:
 //   rgl_values FILE.bsdf COUNT
-// Both directions are uniform over the solid angle to 88 degrees; pairs that the file does not cover are left out. Prints
-// theta_i, phi_i, theta_o, phi_o in degrees, then f_r of each channel, separated by commas.
+// Both directions are uniform over the solid angle to 88 degrees; pairs that the file does not cover are left out.
+// Prints theta_i, phi_i, theta_o, phi_o in degrees, then f_r of each channel, separated by commas.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -57,7 +57,8 @@ TEST(InverseRoot, OfManyChannelsIsThatOfTheWhole) {
   EXPECT_LT((InverseRootTimes(many.sum, score) - eigen.operatorInverseSqrt() * score).norm(), 1e-12 * score.norm());
 }
 
-// Of more coordinates than kMostFull, with one direction that the cluster alone determines and others near it: by powers.
+// Of more coordinates than kMostFull, with one direction that the cluster alone determines and others near it: by
+// powers.
 TEST(InverseRoot, OfManyChannelsThatAClusterNearlyDecides) {
   constexpr Eigen::Index kSize = 450;
   const Eigen::VectorXd score = Eigen::VectorXd::LinSpaced(kSize, -1, 2);

@@ -74,8 +74,8 @@ TEST(SkySphere, IsLinearInEachChannelAlone) {
   EXPECT_GT(Mean(white, 0), 0.1);
 }
 
-// What is drawn from the lobe, by the cosine and about the sun is weighed by all three densities: whatever the lobe, the
-// light is the same. An error in one density or its Jacobian would not cancel.
+// What is drawn from the lobe, by the cosine and about the sun is weighed by all three densities: whatever the lobe,
+// the light is the same. An error in one density or its Jacobian would not cancel.
 TEST(SkySphere, DoesNotDependOnTheLobeThatIsSampled) {
   const ChannelColor color(Rgb3());
   const LitSphere narrow = SkySphere(Diffuse({1, 1, 1}), RoundLobe(0.15), color, 3, 600, 2),

@@ -12,8 +12,8 @@ inline constexpr const char* kMaterialXMasking =
 
 Target MaterialXTarget();
 
-// Evaluated as MaterialX' own GLSL does, height-correlated masking of the mean width and energy compensation, but by the
-// lobe's albedo itself where that has a fit of it.
+// Evaluated as MaterialX' own GLSL does, height-correlated masking of the mean width and energy compensation, but by
+// the lobe's albedo itself where that has a fit of it.
 Surface MaterialXSurface(const FittedBrdf& fit);
 
 }  // namespace lobefit

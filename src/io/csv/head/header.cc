@@ -64,7 +64,8 @@ class HeaderReader {
     return true;
   }
 
-  // "theta_i,10,30" over "theta_o,,": the name of what the columns are stands in a line of its own, as pandas writes it.
+  // "theta_i,10,30" over "theta_o,,": the name of what the columns are stands in a line of its own, as pandas writes
+  // it.
   bool TryPivot(std::size_t at, const Fields& fields) {
     if (fields.size() < 3 || at == 0 || lines_[at - 1].comment) return false;
     if (std::any_of(fields.begin() + 1, fields.end(), [](std::string_view field) { return !Trim(field).empty(); }))
@@ -191,8 +192,8 @@ class HeaderReader {
                          [](const CsvColumn& column) { return column.role == ColumnRole::kCoordinate; });
   }
 
-  // "Samples 861 861 861" of an instrument's head is no row, nor is a line or two of numbers ("Min,Max,Mean" above them),
-  // where names and rows stand below.
+  // "Samples 861 861 861" of an instrument's head is no row, nor is a line or two of numbers ("Min,Max,Mean" above
+  // them), where names and rows stand below.
   bool FindNamesBelow() {
     constexpr std::size_t kMostNumbers = 2;
     std::size_t numbers = 0;

@@ -124,8 +124,8 @@ constexpr auto kWords = std::to_array<std::string_view>({
     "abgeschattet",
 });
 
-// "#VALUE!", "#WERT!", "#\u00a1DIV/0!", "#NV", "#N/D", "#N/A N/A" and "Err:502": what spreadsheets in any language write
-// for a formula that has no result.
+// "#VALUE!", "#WERT!", "#\u00a1DIV/0!", "#NV", "#N/D", "#N/A N/A" and "Err:502": what spreadsheets in any language
+// write for a formula that has no result.
 bool IsSpreadsheetError(std::string_view lower) {
   if (lower.starts_with("err:")) return ParseDouble(lower.substr(4)).has_value();
   if (lower.size() < 3 || lower.front() != '#') return false;

@@ -29,7 +29,8 @@ std::optional<std::string> CheckRadians(const Range& theta_i, const Range& theta
     return "all polar angles are below 1.6 degrees" + std::string(phi ? " and all azimuths within 6.3" : "") +
            ": are they radians? --angle-unit rad";
   }
-  // Of one polar angle alone: it moves through more than 57 degrees if these are radians, and through one if they are not.
+  // Of one polar angle alone: it moves through more than 57 degrees if these are radians, and through one if they are
+  // not.
   const auto one_alone = [](const Range& angle, const Range& other, const std::string& name) -> std::string {
     if (!(Size(other) >= 10 && Size(angle) < 1.6 && angle.second - angle.first > 1)) return "";
     return "the other polar angle runs to " + Short(Size(other)) + " degrees, but " + name + " only to " +
