@@ -23,7 +23,6 @@ std::optional<CoatStage> MakeCoat(const KernelModel& model, bool gradient) {
 Block::Block(const KernelSamples& samples, const KernelModel& model, bool gradient, bool slopes)
     : samples_(samples),
       model_(model),
-      gradient_(gradient),
       slopes_(slopes || gradient),
       coat_(MakeCoat(model, gradient)),
       lobes_(model, gradient, &memory_),

@@ -47,7 +47,7 @@ class Block {
 
   const KernelSamples& samples_;
   const KernelModel& model_;
-  const bool gradient_, slopes_;
+  const bool slopes_;
   std::size_t count_ = 0, padded_ = 0;
   const double* cos_i_ = nullptr;
   std::optional<CoatStage> coat_;
