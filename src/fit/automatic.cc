@@ -31,7 +31,7 @@ std::size_t UsableSamples(const Samples& samples, double theta_max) {
 }  // namespace
 
 Recipe ChooseAutomatically(const Measurement& measurement) {
-  const Recipe automatic = AutomaticRecipe(TraitsOf(measurement));
+  Recipe automatic = AutomaticRecipe(TraitsOf(measurement));
   const std::size_t channels = measurement.channels.size();
   const std::size_t usable = UsableSamples(measurement.samples, automatic.theta_max), numbers = usable * channels;
   // With as many parameters as numbers it would go through all of them, and determine nothing beside.

@@ -187,7 +187,7 @@ std::string WhyNotEvaluable(const Model& model) {
       return "metal = '" + lobe.metal + "' goes with fresnel = 'conductor' only";
     }
   }
-  if (const std::string why = WhyNoCoat(model); !why.empty()) return why;
+  if (std::string why = WhyNoCoat(model); !why.empty()) return why;
   if (model.diffuse == Diffuse::kMicrofacet) {
     const Lobe& first = model.lobes.front();
     const Family family = FamilyOf(first.ndf);

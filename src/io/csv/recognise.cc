@@ -7,6 +7,7 @@
 #include "lobefit/base/error.h"
 #include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/head_text.h"
+#include "lobefit/io/csv/head/header.h"
 #include "lobefit/io/csv/names/columns.h"
 #include "lobefit/io/csv/names/name_rules.h"
 #include "lobefit/io/csv/reader.h"

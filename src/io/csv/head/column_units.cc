@@ -34,12 +34,12 @@ bool HasUnits(ColumnRole role) {
 std::string UnitAtEnd(std::string_view text, ColumnRole role) {
   text = Trim(text);
   if (text.starts_with("in ")) text.remove_prefix(3);
-  if (const std::string whole = UnitOfRole(text, role); !whole.empty()) return whole;
+  if (std::string whole = UnitOfRole(text, role); !whole.empty()) return whole;
   for (const std::string_view mark : {"[", "(", " in ", ", "}) {
     const std::size_t at = text.rfind(mark);
     if (at == std::string_view::npos || HasNumber(text.substr(0, at))) continue;
     const std::size_t begin = mark == "[" || mark == "(" ? at : at + mark.size();
-    if (const std::string unit = UnitOfRole(text.substr(begin), role); !unit.empty()) return unit;
+    if (std::string unit = UnitOfRole(text.substr(begin), role); !unit.empty()) return unit;
   }
   return "";
 }

@@ -6,6 +6,7 @@
 
 #include "lobefit/base/text/csv_fields.h"
 #include "lobefit/base/text/text.h"
+#include "lobefit/io/csv/head/cells.h"
 #include "lobefit/io/csv/head/head_lines.h"
 #include "lobefit/io/csv/head/no_value.h"
 #include "lobefit/io/text/place.h"

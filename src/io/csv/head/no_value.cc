@@ -144,9 +144,9 @@ bool IsNoValueWord(std::string_view field) {
   if (lower.size() > 2 && lower.front() == '(' && lower.back() == ')') lower = lower.substr(1, lower.size() - 2);
   if (std::find(kWords.begin(), kWords.end(), lower) != kWords.end() || IsSpreadsheetError(lower)) return true;
   // "---", "***", "####" (a column too narrow), an en or em dash.
-  if (lower.find_first_not_of("-") == std::string::npos || lower.find_first_not_of("*") == std::string::npos ||
-      lower.find_first_not_of("#") == std::string::npos || lower.find_first_not_of("_") == std::string::npos ||
-      lower.find_first_not_of(".") == std::string::npos || lower == "\xe2\x80\x93" || lower == "\xe2\x80\x94") {
+  if (lower.find_first_not_of('-') == std::string::npos || lower.find_first_not_of('*') == std::string::npos ||
+      lower.find_first_not_of('#') == std::string::npos || lower.find_first_not_of('_') == std::string::npos ||
+      lower.find_first_not_of('.') == std::string::npos || lower == "\xe2\x80\x93" || lower == "\xe2\x80\x94") {
     return true;
   }
   // "1.#QNAN", "-1.#IND", "1.#INF" of older C libraries; "<0.001" and ">100", beyond what the instrument can tell.
