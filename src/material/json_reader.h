@@ -46,8 +46,10 @@ class JsonReader {
     if (choice == nullptr) Fail(fmt::format("{} '{}' is not known to this version ({})", name, text, Version()));
     return choice->value;
   }
+  // A number or a list of them, at least one, times `factor`; NaN for null.
   std::vector<double> GetNumbers(const Json& object, const char* name, double factor) const {
     const Json& member = Member(object, name);
+    if (member.is_array() && member.empty()) Fail(fmt::format("member '{}' holds no number", name));
     std::vector<double> numbers;
     for (const Json& entry : member.is_array() ? member : Json::array({member})) {
       if (!entry.is_number() && !entry.is_null())

@@ -210,6 +210,23 @@ TEST(MaterialJson, ChecksValuesAgainstTheTableOfParameters) {
   }
 }
 
+// Lists without a number, of which the first was taken.
+TEST(MaterialJson, RefusesEmptyLists) {
+  Material material = FittedMaterial();
+  material.tried = {{"ggx", 7, 0.1, 1, true}};
+  const nlohmann::json good = nlohmann::json::parse(ToJson(material));
+  for (const char* where :
+       {"/quality/typical_error", "/quality/noise", "/quality/explained", "/quality/energy/largest_albedo",
+        "/quality/tried/0/held_out_error", "/quality/tried/0/ratio", "/parameters/alpha_x/stderr",
+        "/parameters/f0/stderr_clustered"}) {
+    SCOPED_TRACE(where);
+    nlohmann::json json = good;
+    ASSERT_TRUE(json.contains(nlohmann::json::json_pointer(where)));
+    json[nlohmann::json::json_pointer(where)] = nlohmann::json::array();
+    EXPECT_THROW(MaterialFromJson(json.dump(), "m.json"), InputError);
+  }
+}
+
 TEST(MaterialJson, ReadsTheInstrumentBackAndChecksIt) {
   Material material = FittedMaterial();
   InstrumentUsed instrument;
