@@ -19,14 +19,16 @@ constexpr double kDegree = kPi / 180;
 //
 // Kept directions stand in the cells of a grid over x and y: what is near on the sphere is near there, above the
 // horizon or below. Cells are twice the resolution wide, so that what is within it lies in at most four. The grid
-// repeats itself where it would be large: what a cell holds is asked for its distance anyway.
+// repeats itself where it would have more cells than directions can fill: what a cell holds is asked for its distance
+// anyway.
 class DirectionMerger {
  public:
-  explicit DirectionMerger(double resolution)
+  // `most`: directions that will be added at most.
+  DirectionMerger(double resolution, std::size_t most)
       : resolution_(resolution),
         near_(Chord2(resolution)),
         same_(Chord2(resolution / 4)),
-        side_(std::bit_ceil(static_cast<std::size_t>(std::min(1 / resolution + 2, kMostSide)))),
+        side_(SideOf(resolution, most)),
         newest_(side_ * side_, kNone) {}
 
   // Index of the kept direction that `w` counts as.
@@ -67,13 +69,18 @@ class DirectionMerger {
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  static constexpr double kMostSide = 1024;  // 4 MB of cells: 0.1 degree over all of x and y
   struct Kept {
     Vec3 w;
     std::uint32_t parent;  // itself at the root of what is one
     std::uint32_t before;  // the one that came to the cell before it, or kNone
   };
 
+  // Cells along x: for 0.1 degree over all of x and y 1024, 4 MB; for few directions four a direction.
+  static std::size_t SideOf(double resolution, std::size_t most) {
+    constexpr double kMost = 1024;
+    const double wanted = std::min(2 * std::sqrt(static_cast<double>(most)) + 1, 1 / resolution + 2);
+    return std::bit_ceil(static_cast<std::size_t>(std::min(wanted, kMost)));
+  }
   static double Chord2(double angle) { return 4 * std::pow(std::sin(angle / 2), 2); }
   bool IsWithin(const Vec3& w, std::uint32_t other, double chord2) const {
     const Vec3 d = w - kept_[other].w;
@@ -145,7 +152,7 @@ Incidences GroupByDirection(const Measurement& measurement, Beam side, double re
     groups.resize(static_cast<std::size_t>(kPi / 2 / resolution) + 2);
     std::iota(groups.begin(), groups.end(), 0U);
   }
-  DirectionMerger merger(resolution);
+  DirectionMerger merger(resolution, measurement.isotropic ? 0 : samples.size());
   std::vector<Vec3> sums;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Vec3 w = side == Beam::kViewer ? samples.wo(i) : samples.wi(i);
