@@ -22,7 +22,7 @@ void AmidRows::TakeWords(std::string_view line, std::size_t number, const RowPar
   }
   if (ReadKeyAmidRows(number, {}, fields)) return;
   ++words_;
-  const bool names = NamesADirection(Classify(fields));
+  const bool names = fields.size() > 1 && NamesADirection(Classify(fields));
   if (!message_.empty() && !names) return;
   line_ = number;
   message_ = names ? "names other columns than line " + std::to_string(header_.names_line) +
@@ -55,10 +55,11 @@ bool AmidRows::AreUnitsAgain(const std::vector<std::string_view>& fields) const 
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string_view unit = Unquoted(fields[i], &storage);
     if (unit.empty()) continue;
+    if (!IsUnitOrBlank(unit)) return false;
     CsvColumn again = ClassifyColumn(header_.columns[i].name);
     again.unit.clear();
     SetUnit(unit, &again);
-    if (!IsUnitOrBlank(unit) || again.unit != header_.columns[i].unit) return false;
+    if (again.unit != header_.columns[i].unit) return false;
     any = true;
   }
   return any;
@@ -73,10 +74,15 @@ void AmidRows::TakeComment(std::size_t number, std::string_view text) {
 
 bool AmidRows::ReadKeyAmidRows(std::size_t number, std::string_view comment,
                                const std::vector<std::string_view>& fields) {
-  if (!comment.empty() && comment.find_first_of(":=") == std::string_view::npos) return false;
+  if (!comment.empty() && comment.find_first_of(":=") == std::string_view::npos) {
+    RequireKeptUnits(number, FindColumnUnits(comment));
+    return false;
+  }
   CsvKeys keys = header_.keys;
   if (!(fields.empty() ? ReadKey(file_, number, comment, &keys) : ReadKey(file_, number, fields, &keys))) return false;
   RequireSameUnits(file_, number, header_.keys, keys);
+  RequireKeptUnits(number, {keys.column_units.begin() + static_cast<std::ptrdiff_t>(header_.keys.column_units.size()),
+                            keys.column_units.end()});
   for (const FixedCoordinate& fixed : keys.fixed) {
     const FixedCoordinate* before = header_.keys.Find(fixed.coordinate);
     if (before == nullptr) {
@@ -94,6 +100,17 @@ bool AmidRows::ReadKeyAmidRows(std::size_t number, std::string_view comment,
   }
   header_.keys = std::move(keys);
   return true;
+}
+
+// A file put behind another may have other units.
+void AmidRows::RequireKeptUnits(std::size_t number, const std::vector<ColumnUnit>& stated) const {
+  for (const ColumnUnit& unit : stated) {
+    if (KeepsUnits(unit, header_.columns, header_.keys.angle_unit.value_or(AngleUnit::kDegrees))) continue;
+    FailAtLine(file_, number,
+               "the unit of '" + Excerpt(unit.column) + "' is stated as '" + Excerpt(unit.unit) +
+                   "' here, other than that of the rows before; put the parts into files of their own and name them "
+                   "all");
+  }
 }
 
 void AmidRows::Fail() const { FailAtLine(file_, line_, message_); }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lobefit/io/csv/head/column_units.h"
 #include "lobefit/io/csv/head/header.h"
 #include "lobefit/io/csv/rows/layout.h"
 #include "lobefit/io/csv/rows/row_parser.h"
@@ -32,6 +33,8 @@ class AmidRows {
  private:
   bool AreNamesAgain(const std::vector<std::string_view>& fields) const;
   bool AreUnitsAgain(const std::vector<std::string_view>& fields) const;
+  // Throws InputError for a unit of a column that is not that of the rows before.
+  void RequireKeptUnits(std::size_t number, const std::vector<ColumnUnit>& stated) const;
   bool ReadKeyAmidRows(std::size_t number, std::string_view comment, const std::vector<std::string_view>& fields);
 
   const InputFile& file_;

@@ -84,6 +84,20 @@ TEST(CsvKeys, UnitsOfColumnsStatedAboveThem) {
             std::string::npos);
 }
 
+// A file that was put behind another, in other units.
+TEST(CsvKeys, UnitsOfColumnsDoNotChangeAmidRows) {
+  const std::string rows = "theta_i,theta_o,dphi,brdf\n10,10,180,0.3\n20,30,180,0.3\n";
+  for (const char* line : {"# theta_i, theta_o: rad\n", "# theta_o [rad]\n", "# brdf: in %\n"}) {
+    const std::string message = MessageOf(rows + line + "0.1,0.2,180,0.3\n");
+    EXPECT_NE(message.find("line 4"), std::string::npos) << line << message;
+    EXPECT_NE(message.find("put the parts into files of their own"), std::string::npos) << line << message;
+  }
+  for (const char* line : {"# theta_i, theta_o: deg\n", "# theta_o [deg]\n", "# brdf: 1/sr\n", "# sample 2 [rad]\n"})
+    EXPECT_EQ(ReadText(rows + line + "30,30,180,0.3\n").samples.size(), 3U) << line;
+  EXPECT_NE(MessageOf("# BRDF [%]\ntheta_i,theta_o,BRDF (1/sr)\n10,20,1\n").find("take one of them away"),
+            std::string::npos);
+}
+
 TEST(CsvKeys, PartsOfASentenceAreNoKeyInCells) {
   EXPECT_NE(MessageOf("# AOI 30 deg, repeated at AOI 50 deg\ntheta_o,brdf\n10,1\n20,2\n").find("theta_i"),
             std::string::npos);

@@ -26,8 +26,9 @@ std::string UnitOfRole(std::string_view text, ColumnRole role) {
   return known ? unit : "";
 }
 
+constexpr std::array kRolesWithUnits = {ColumnRole::kCoordinate, ColumnRole::kValue, ColumnRole::kWavelength};
 bool HasUnits(ColumnRole role) {
-  return role == ColumnRole::kCoordinate || role == ColumnRole::kValue || role == ColumnRole::kWavelength;
+  return std::find(kRolesWithUnits.begin(), kRolesWithUnits.end(), role) != kRolesWithUnits.end();
 }
 
 // "rad", "incidence angle [rad]", "the angle of the light, in radians".
@@ -42,6 +43,13 @@ std::string UnitAtEnd(std::string_view text, ColumnRole role) {
     if (std::string unit = UnitOfRole(text.substr(begin), role); !unit.empty()) return unit;
   }
   return "";
+}
+
+// Of some column; what has none is not looked at further: a name takes ten times as long, and a file may have a hundred
+// thousand lines of comments.
+bool HasUnitAtEnd(std::string_view text) {
+  return std::any_of(kRolesWithUnits.begin(), kRolesWithUnits.end(),
+                     [&](ColumnRole role) { return !UnitAtEnd(text, role).empty(); });
 }
 
 // "Column 3", "col. 3", "C3", "3".
@@ -64,6 +72,7 @@ std::string_view Member(std::string_view text, std::string_view name) {
 // One name with its unit, perhaps with words behind: "theta_i (rad) - incidence".
 void AddNamed(std::string_view name, std::vector<ColumnUnit>* found) {
   for (const std::string_view text : {name, name.substr(0, name.find(" - ")), name.substr(0, name.find(','))}) {
+    if (!HasUnitAtEnd(text)) continue;
     const CsvColumn column = ClassifyColumn(text);
     if (!HasUnits(column.role) || column.unit.empty()) continue;
     found->push_back({std::string(Trim(text)), column.unit});
@@ -73,6 +82,7 @@ void AddNamed(std::string_view name, std::vector<ColumnUnit>* found) {
 
 // "theta_i, theta_o: rad"
 void AddList(std::string_view part, std::size_t mark, std::vector<ColumnUnit>* found) {
+  if (!HasUnitAtEnd(part.substr(mark + 1))) return;
   std::vector<ColumnUnit> all;
   for (const std::string_view name : Split(part.substr(0, mark), ',')) {
     const CsvColumn column = ClassifyColumn(name);
@@ -82,6 +92,26 @@ void AddList(std::string_view part, std::size_t mark, std::vector<ColumnUnit>* f
     all.push_back({std::string(Trim(name)), unit});
   }
   found->insert(found->end(), all.begin(), all.end());
+}
+
+// `known`: the statement's column as a name.
+bool IsColumn(const ColumnUnit& unit, const CsvColumn& known, const CsvColumn& column) {
+  if (ToLower(column.name) == ToLower(unit.column)) return true;
+  return known.role == column.role &&
+         ((known.role == ColumnRole::kCoordinate && known.coordinate == column.coordinate) ||
+          known.role == ColumnRole::kValue);
+}
+
+// Whether numbers in the stated unit are others than the column's; `angles`: of columns that have no unit.
+bool IsReadOtherwise(std::string_view unit, const CsvColumn& column, AngleUnit angles) {
+  if (column.role == ColumnRole::kCoordinate) {
+    const std::optional<AngleUnit> angle = ParseAngleUnit(unit);
+    return angle && *angle != column.angle_unit.value_or(angles);
+  }
+  if (column.role != ColumnRole::kValue) return false;
+  const ValueScale own = column.value_scale.value_or(ValueScale());
+  const std::optional<ValueScale> scale = ParseValueScale(unit);
+  return scale && (scale->form != own.form || scale->factor != own.factor);
 }
 
 }  // namespace
@@ -113,19 +143,22 @@ const ColumnUnit* SetColumnUnits(const std::vector<ColumnUnit>& stated, std::vec
   for (const ColumnUnit& unit : stated) {
     const CsvColumn known = ClassifyColumn(unit.column);
     for (CsvColumn& column : *columns) {
-      const bool same = ToLower(column.name) == ToLower(unit.column) ||
-                        (known.role == column.role &&
-                         ((known.role == ColumnRole::kCoordinate && known.coordinate == column.coordinate) ||
-                          known.role == ColumnRole::kValue));
-      if (!same) continue;
+      if (!IsColumn(unit, known, column)) continue;
       if (column.unit.empty()) {
         SetUnit(unit.unit, &column);
-      } else if (column.angle_unit && ParseAngleUnit(unit.unit) && column.angle_unit != ParseAngleUnit(unit.unit)) {
+      } else if (IsReadOtherwise(unit.unit, column, AngleUnit::kDegrees)) {
         return &unit;
       }
     }
   }
   return nullptr;
+}
+
+bool KeepsUnits(const ColumnUnit& stated, const std::vector<CsvColumn>& columns, AngleUnit angles) {
+  const CsvColumn known = ClassifyColumn(stated.column);
+  return std::none_of(columns.begin(), columns.end(), [&](const CsvColumn& column) {
+    return IsColumn(stated, known, column) && IsReadOtherwise(stated.unit, column, angles);
+  });
 }
 
 }  // namespace lobefit

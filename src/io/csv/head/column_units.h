@@ -24,4 +24,7 @@ std::vector<ColumnUnit> FindColumnUnits(std::string_view text);
 // a name; null where there is none.
 const ColumnUnit* SetColumnUnits(const std::vector<ColumnUnit>& stated, std::vector<CsvColumn>* columns);
 
+// Whether a statement amid the rows leaves the units as they are; `angles`: of columns of angles that have none.
+bool KeepsUnits(const ColumnUnit& stated, const std::vector<CsvColumn>& columns, AngleUnit angles);
+
 }  // namespace lobefit
