@@ -91,37 +91,40 @@ struct FresnelRow {
   const char* name;
   double low, high, start;
   const char* description;
-  bool is_reflectance = false, free = true, shared = false;
+  bool free = true, shared = false, is_reflectance = false;
 };
+FresnelRow ReflectanceRow(const char* name, double start, const char* description) {
+  return {name, 0, 1, start, description, true, false, true};
+}
 // Indices beyond the ranges are not known of any metal between 0.3 and 12 um, or of any transparent solid.
 std::vector<FresnelRow> FresnelRows(Fresnel fresnel) {
   switch (fresnel) {
     case Fresnel::kSchlick:
-      return {{"f0", 0, 1, 0, "reflectance at normal incidence", true}};
+      return {ReflectanceRow("f0", 0, "reflectance at normal incidence")};
     case Fresnel::kConductor:
       return {{"eta", 0.01, 30, 1, "real part of the refractive index"},
               {"k", 0.001, 100, 3, "imaginary part of the refractive index"}};
     case Fresnel::kDielectric:
       return {{"ior", 1, 5, 1.5, "refractive index"}};
     case Fresnel::kSchlickF82:
-      return {{"f0", 0, 1, 0, "reflectance at normal incidence", true},
+      return {ReflectanceRow("f0", 0, "reflectance at normal incidence"),
               {"tint", 0, 1.2, 1, "factor of Schlick's reflectance at 82 degrees"}};
     case Fresnel::kCurve:
-      return {{"F_0", 0, 1, 1, "reflectance at grazing incidence", true},
-              {"F_1", 0, 1, 0.5, "coefficient of the reflectance, weightiest near 83 degrees", true},
-              {"F_2", 0, 1, 0.1, "near 73 degrees", true},
-              {"F_3", 0, 1, 0, "near 58 degrees", true},
-              {"F_4", 0, 1, 0, "near 30 degrees", true},
-              {"F_5", 0, 1, 0, "reflectance at normal incidence", true}};
+      return {ReflectanceRow("F_0", 1, "reflectance at grazing incidence"),
+              ReflectanceRow("F_1", 0.5, "coefficient of the reflectance, weightiest near 83 degrees"),
+              ReflectanceRow("F_2", 0.1, "near 73 degrees"),
+              ReflectanceRow("F_3", 0, "near 58 degrees"),
+              ReflectanceRow("F_4", 0, "near 30 degrees"),
+              ReflectanceRow("F_5", 0, "reflectance at normal incidence")};
     case Fresnel::kCoatLayered:
     case Fresnel::kCoatRefracted:
       // The absorption is not free: without samples at grazing it is the reflectance of what lies below over again.
-      return {{"ior", 1, 3, 1.5, "refractive index of the coat", false, true, true},
-              {"tau", 0, 10, 0, "optical depth of the coat along the normal, one way", false, false, false}};
+      return {{"ior", 1, 3, 1.5, "refractive index of the coat", true, true},
+              {"tau", 0, 10, 0, "optical depth of the coat along the normal, one way", false, false}};
     case Fresnel::kNone:
       break;
   }
-  return {{"scale", 0, 1e6, 0, "factor of the lobe in place of a Fresnel term", true}};
+  return {{"scale", 0, 1e6, 0, "factor of the lobe in place of a Fresnel term", true, false, true}};
 }
 
 const char* DiffuseAlbedoText(Diffuse diffuse) {

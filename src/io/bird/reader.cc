@@ -137,7 +137,10 @@ class BirdReader {
   std::optional<double> RelativeUncertainty() const {
     const std::string unit = PlainUnit(sigma_unit_);
     if (unit == "%" || unit == "percent") return 0.01;
-    if (unit == "relative" || unit == "rel" || unit == "rel.") return 1.0;
+    // Without a dimension beside values that have one.
+    const std::string of_values = PlainUnit(variables_.at("BRDF").unit);
+    const bool is_ratio = unit == "1" && !of_values.empty() && of_values != "1";
+    if (is_ratio || unit == "relative" || unit == "rel" || unit == "rel.") return 1.0;
     if (const std::optional<ValueScale> known = ParseValueScale(unit);
         known && known->form == ValueScale::Form::kLinear && !known->arbitrary)
       return std::nullopt;

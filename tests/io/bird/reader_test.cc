@@ -68,6 +68,8 @@ TEST(Bird, UncertaintiesRelativeToTheValue) {
   };
   EXPECT_THAT(sigma("%", "2"), testing::Pointwise(testing::DoubleEq(), {0.04, 0.08}));
   EXPECT_THAT(sigma("relative", "0.02"), testing::Pointwise(testing::DoubleEq(), {0.04, 0.08}));
+  // Without a dimension beside values in 1/sr.
+  EXPECT_THAT(sigma("1", "0.02"), testing::Pointwise(testing::DoubleEq(), {0.04, 0.08}));
   EXPECT_THAT(sigma("sr^-1", "0.02"), testing::Pointwise(testing::DoubleEq(), {0.02, 0.02}));
   EXPECT_THROW(sigma("furlong", "1"), InputError);
 }
