@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "lobefit/core/brdf/abg_lobe.h"
@@ -100,6 +101,17 @@ void AddLobe(const Lobe& lobe, const LobeShape& shape, Fresnel fresnel,
   std::vector<double> specular(count), cos_d(count);
   SpecularLobe({in[0].data(), in[1].data(), in[2].data(), out[0].data(), out[1].data(), out[2].data(), count}, lobe,
                shape, specular.data(), cos_d.data(), nullptr);
+  if (fresnel == Fresnel::kCurve && cover == nullptr) {
+    // Linear in its coefficients: of hundreds of channels the basis is found once.
+    double sums[kFresnelCurveSize] = {}, basis[kFresnelCurveSize];
+    for (std::size_t i = 0; i < count; ++i) {
+      FresnelCurveBasis(cos_d[i], basis);
+      for (std::size_t k = 0; k < kFresnelCurveSize; ++k) sums[k] += weight[i] * specular[i] * basis[k];
+    }
+    for (std::size_t c = 0; c < albedo->size(); ++c)
+      (*albedo)[c] += std::inner_product(sums, sums + kFresnelCurveSize, parameters[c].data(), 0.0);
+    return;
+  }
   for (std::size_t c = 0; c < albedo->size(); ++c) {
     for (std::size_t i = 0; i < count; ++i) {
       const double kept = cover == nullptr ? 1 : std::exp(-cover->tau[c] * path[i]);

@@ -43,7 +43,8 @@ double InverseRoot(double eigenvalue) { return 1 - eigenvalue > kAlone ? 1 / std
 
 // The same of one vector in the space of its powers [Lanczos 1950, with all earlier directions taken out again]: where
 // a cluster has nearly all the say in some of thousands of coordinates the series is endless, and eigenvectors of all
-// take minutes. False where the answer still moves by more than a billionth after kMostPowers.
+// take minutes. Of 6406 coordinates, where the series took hundreds of terms, 40 to 80 powers do. False where the answer
+// still moves by more than a billionth after kMostPowers.
 bool ByPowers(const WhitenedMatrix& curvature, const Eigen::VectorXd& vector, Eigen::MatrixXd* result) {
   constexpr Eigen::Index kMostPowers = 400, kEvery = 20;
   const double length = vector.norm();
@@ -82,9 +83,9 @@ bool ByPowers(const WhitenedMatrix& curvature, const Eigen::VectorXd& vector, Ei
 
 Eigen::MatrixXd InverseRootTimes(const WhitenedMatrix& curvature, const Eigen::MatrixXd& vectors) {
   Eigen::MatrixXd result;
-  if (BySeries(curvature, vectors, &result)) return result;
   const bool large = vectors.rows() > static_cast<Eigen::Index>(kMostFull);
   if (large && vectors.cols() == 1 && ByPowers(curvature, vectors.col(0), &result)) return result;
+  if (BySeries(curvature, vectors, &result)) return result;
   const SymmetricEigen eigen = DecomposeSymmetric(curvature.Dense());
   const Eigen::VectorXd factor = eigen.values.unaryExpr(&InverseRoot);
   return eigen.vectors * (factor.asDiagonal() * (eigen.vectors.transpose() * vectors));

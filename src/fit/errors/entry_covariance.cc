@@ -4,7 +4,8 @@
 
 namespace lobefit {
 
-EntryCovariance::EntryCovariance(const ReportedEntries& entries, const WhitenedMatrix& filling, bool full) : full_(full) {
+EntryCovariance::EntryCovariance(const ReportedEntries& entries, const WhitenedMatrix& filling, bool full)
+    : full_(full) {
   const Eigen::Index count = entries.rows.rows();
   variance_.setZero(count);
   kept_.assign(static_cast<std::size_t>(count), -1);
@@ -40,11 +41,13 @@ double EntryCovariance::operator()(Eigen::Index i, Eigen::Index j) const {
 
 void EntryCovariance::AddSquare(const Eigen::VectorXd& moved) {
   const auto has_error = [this](Eigen::Index i) { return variance_(i) > 0; };
+  std::vector<Eigen::Index> known;  // of which the matrix holds the pairs
   for (Eigen::Index i = 0; i < size(); ++i) {
-    for (Eigen::Index j = 0; j < size() && has_error(i); ++j) {
-      const Eigen::Index k = kept_[static_cast<std::size_t>(i)], l = kept_[static_cast<std::size_t>(j)];
-      if (k >= 0 && l >= 0 && has_error(j)) matrix_(k, l) += moved(i) * moved(j);
-    }
+    if (kept_[static_cast<std::size_t>(i)] >= 0 && has_error(i)) known.push_back(i);
+  }
+  for (const Eigen::Index i : known) {
+    for (const Eigen::Index j : known)
+      matrix_(kept_[static_cast<std::size_t>(i)], kept_[static_cast<std::size_t>(j)]) += moved(i) * moved(j);
   }
   for (Eigen::Index i = 0; i < size(); ++i) {
     if (has_error(i)) variance_(i) += moved(i) * moved(i);

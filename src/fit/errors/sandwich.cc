@@ -6,8 +6,8 @@
 
 #include "lobefit/fit/errors/clusters.h"
 #include "lobefit/fit/errors/leave_one_out.h"
-#include "lobefit/fit/kernel/product_sums.h"
 #include "lobefit/fit/errors/sample_rows.h"
+#include "lobefit/fit/kernel/product_sums.h"
 #include "lobefit/fit/objective/gains.h"
 
 namespace lobefit {

@@ -53,6 +53,8 @@ class WhitenedMatrix {
 
  private:
   void AddBesideBorder(std::size_t channel, const ProductSums& of_rows);
+  // Adds a channel's own block times its part of a vector.
+  void AddOwnTimes(std::size_t channel, const double* vector, double* product) const;
   double At(Eigen::Index i, Eigen::Index j) const;
 
   const WhitenedForm* form_ = nullptr;
