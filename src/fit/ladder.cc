@@ -326,8 +326,9 @@ LadderChoice ClimbLadder(const Recipe& simplest, const FitOptions& options, Meas
   if (!spectrum) with_curve({{profile}, {profile}}, with_two);
   // What a part gains it may gain over one lobe as well, where tails and curves stood in for it; that takes little.
   const auto add_part = [&](const Model& with, const std::string& name, const Model& alone) {
-    ladder.Try(with, name, &ladder.Best());
-    ladder.Try(alone, NameOfParts(alone));
+    const std::string name_alone = NameOfParts(alone);
+    if (NameOfParts(with) != name_alone) ladder.Try(with, name, &ladder.Best());
+    ladder.Try(alone, name_alone);
   };
   // What an interface throws back is no multiple of an albedo, which a free scale does not tell.
   Model interfaced = ladder.Best().recipe.model;

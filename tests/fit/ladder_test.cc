@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "tests/support/synthetic.h"
 #include <gmock/gmock.h>
@@ -142,6 +145,15 @@ TEST(Ladder, NeverWorseThanOneLobeAndTheFirstOfTheTable) {
 
 // Several models hold exact data exactly: rounding is no reason for one with more parameters, and the fit is as exact
 // as the trial was.
+// Where one lobe is the best so far, a part beside it is that part beside one lobe.
+TEST(Ladder, NoModelIsTriedTwice) {
+  std::vector<std::string> names;
+  for (const TriedModel& model : ChoiceFor(Gray(Ndf::kGgx, 0.2, 0.2), 1).tried) names.push_back(model.name);
+  EXPECT_GT(names.size(), 8U);
+  const std::set<std::string> different(names.begin(), names.end());
+  EXPECT_EQ(different.size(), names.size()) << testing::PrintToString(names);
+}
+
 TEST(Ladder, OfExactModelsTheOneWithFewestParameters) {
   SyntheticCase truth = Gray(Ndf::kGgx, 0.2, 0.2);
   truth.model.lobes[0].fresnel = Fresnel::kCurve;
