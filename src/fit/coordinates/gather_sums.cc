@@ -5,6 +5,7 @@ namespace lobefit {
 
 std::vector<int> Layout::CoordinatesOfColumns(std::size_t c) const {
   std::vector<int> index;
+  index.reserve(shape_size_ + linear_[c].size() + 2);
   for (std::size_t k = 0; k < shape_size_; ++k) index.push_back(static_cast<int>(k));
   for (const Linear& linear : linear_[c]) index.push_back(linear.index);
   if (recipe_.instrument.drift) index.push_back(-1);

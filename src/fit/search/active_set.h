@@ -58,7 +58,7 @@ Eigen::VectorXd StepByActiveSet(const Eigen::VectorXd& low, const Eigen::VectorX
     }
     if (!left) break;
   }
-  if (steepest(held, x) < 0) return x;
+  if (held == without_room || steepest(held, x) < 0) return x;
 
   held = without_room;
   x = start;

@@ -200,7 +200,7 @@ Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& hessian, const Eigen::VectorX
     h = hessian;
     right = -gradient;
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (held[static_cast<std::size_t>(i)] != 0) right -= hessian.col(i) * x(i);
+      if (held[static_cast<std::size_t>(i)] != 0 && x(i) != 0) right -= hessian.col(i) * x(i);
     }
     for (Eigen::Index i = 0; i < n; ++i) {
       const bool fixed = held[static_cast<std::size_t>(i)] != 0;
