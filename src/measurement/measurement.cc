@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "lobefit/measurement/pair_index.h"
@@ -26,6 +27,9 @@ void ForEachArray(Samples& samples, Function&& function) {
 }
 
 bool IsFinite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// By more than a factor of two: no noise of a repetition.
+bool AreUnlike(double a, double b) { return a > 0 && b > 0 && std::max(a, b) > 2 * std::min(a, b); }
 
 }  // namespace
 
@@ -112,15 +116,34 @@ Measurement MeasurementBuilder::Finish() {
   };
   for (std::size_t i = 0; i < kAhead; ++i) prepare(i);
   std::vector<std::uint8_t> keep(samples.size(), 1);
+  std::vector<std::size_t> firsts;  // of each pair its first sample, as soon as one occurs again
+  std::size_t unlike = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const std::size_t known = seen.size();
-    if (seen.FindOrAdd(ahead[i % kAhead]) < known) {
+    const std::size_t known = seen.size(), pair = seen.FindOrAdd(ahead[i % kAhead]);
+    if (pair < known) {
       keep[i] = 0;
       Skip(SetAsideReason::kDuplicate);
+      if (firsts.empty()) {
+        firsts.resize(known);
+        std::iota(firsts.begin(), firsts.end(), std::size_t{0});
+      }
+      // On the normal grids repeat a direction once for each azimuth.
+      const bool on_normal = samples.wi_z[i] > 1 - 1e-12 || samples.wo_z[i] > 1 - 1e-12;
+      unlike += !on_normal && AreUnlike(samples.values[0][firsts[pair]], samples.values[0][i]) ? 1 : 0;
+    } else if (!firsts.empty()) {
+      firsts.push_back(i);
     }
     prepare(i + kAhead);
   }
-  if (seen.size() < samples.size()) samples.Keep(keep);
+  const std::size_t repeats = samples.size() - seen.size();
+  if (repeats > 0) samples.Keep(keep);
+  if (5 * unlike > repeats) {
+    measurement_.remarks.push_back("directions occur again, and " + std::to_string(unlike) + " of " +
+                                   std::to_string(repeats) +
+                                   " repetitions differ from the first by more than a factor of two: is something "
+                                   "missing that tells them apart (an "
+                                   "azimuth, a wavelength, the sample)? Only the first of each are kept");
+  }
   return std::move(measurement_);
 }
 
