@@ -277,6 +277,7 @@ class HeaderReader {
     for (std::size_t i = 0; i < data_; ++i) {
       if (!lines_[i].comment) continue;
       const std::string_view text = WithoutEmptyCells(CommentText(lines_[i].text), header_.separator);
+      AddTitle(PlainComment(text));
       if (!ReadKey(file_, lines_[i].number, text, &header_.keys) && !IsKeyInCells(lines_[i].number, text) &&
           !text.empty())
         header_.comments.emplace_back(PlainComment(text));
@@ -303,7 +304,8 @@ class HeaderReader {
     for (std::size_t i = 0; i < data_; ++i) {
       if (i == names_ || lines_[i].comment) continue;
       const Fields fields = SplitFields(lines_[i].text, header_.separator);
-      if (ReadKey(file_, lines_[i].number, fields, &header_.keys) || i > names_) continue;
+      const bool key = ReadKey(file_, lines_[i].number, fields, &header_.keys);
+      if (i > names_) continue;
       std::vector<std::string> filled;
       std::string storage;
       for (const std::string_view field : fields) {
@@ -311,8 +313,15 @@ class HeaderReader {
       }
       // More are a heading of columns.
       if (header_.separator == kBlankSeparator) filled = {std::string(Trim(lines_[i].text))};
-      if (filled.size() <= 2) header_.comments.push_back(Join(filled, " "));
+      if (filled.size() > 2) continue;
+      AddTitle(Join(filled, " "));
+      if (!key) header_.comments.push_back(Join(filled, " "));
     }
+  }
+
+  void AddTitle(std::string_view text) {
+    constexpr std::size_t kMostTitles = 200;
+    if (header_.titles.size() < kMostTitles && !text.empty()) header_.titles.emplace_back(text);
   }
 
   void TakeUnits() {

@@ -91,9 +91,14 @@ std::optional<Quantity> ParseQuantity(std::string_view text) {
 }
 
 bool ReadCoordinate(std::string_view key, std::string_view word, CsvKeys* keys) {
-  const CsvColumn column = ClassifyColumn(key);
+  CsvColumn column = ClassifyColumn(key);
   const std::optional<Quantity> quantity = ParseQuantity(word);
   if (!quantity) return false;
+  // "Illumination: 45 deg"
+  if (column.role == ColumnRole::kUnknown && !quantity->unit.empty() && ParseAngleUnit(quantity->unit)) {
+    CsvColumn angle = ClassifyColumn(std::string(key) + " (" + quantity->unit + ")");
+    if (angle.role == ColumnRole::kCoordinate && angle.coordinate == Coordinate::kThetaI) column = std::move(angle);
+  }
   if (column.role == ColumnRole::kWavelength) {
     const std::string& unit = quantity->unit.empty() ? column.unit : quantity->unit;
     const std::optional<WavelengthUnit> known =

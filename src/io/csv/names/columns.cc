@@ -167,6 +167,20 @@ bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {
   return true;
 }
 
+// "cos_sza"
+bool IsCosineOfSynonym(std::string_view joined, CsvColumn* column) {
+  if (!joined.starts_with("cos_")) return false;
+  const auto* synonym =
+      std::find_if(kSynonyms.begin(), kSynonyms.end(), [&](const Synonym& s) { return s.name == joined.substr(4); });
+  if (synonym == kSynonyms.end() || synonym->role != ColumnRole::kCoordinate ||
+      (synonym->coordinate != Coordinate::kThetaI && synonym->coordinate != Coordinate::kThetaO))
+    return false;
+  column->role = ColumnRole::kCoordinate;
+  column->coordinate = synonym->coordinate;
+  column->form = AngleForm::kCosine;
+  return true;
+}
+
 bool IsValueWord(const std::string& word) {
   std::optional<ValueKind> kind;
   return NamesValue(word, &kind);
@@ -379,6 +393,9 @@ CsvColumn ClassifyName(std::string_view name, Fixed fixed) {
     column.role = synonym->role;
     column.coordinate = synonym->coordinate;
     column.magnitude = split.magnitude;
+    // 45as15 is 15 degrees from the mirror direction towards the light (ASTM E2194, DIN 6175-2).
+    column.reversed = column.aspecular = joined.starts_with("aspecular");
+  } else if (plain && IsCosineOfSynonym(joined, &column)) {
   } else if (attempt([&](CsvColumn* c) { return ClassifyValue(split, c); })) {
   } else if (attempt([&](CsvColumn* c) { return ClassifySpread(split, c); })) {
   } else if (plain && attempt([&](CsvColumn* c) { return ClassifyPolarisation(split.words, c); })) {

@@ -71,6 +71,7 @@ struct CsvColumn {
   std::optional<AngleUnit> angle_unit;          // stated by the name
   AngleForm form = AngleForm::kPolar;
   bool reversed = false;                  // theta_i - theta_o instead of theta_o - theta_i
+  bool aspecular = false;                 // reversed by a convention that not all keep to
   bool magnitude = false;                 // |beta - beta0|
   bool of_viewer = false;                 // kPolarisation: behind the sample, before the detector
   bool letter_s = false;                  // "theta_s": scattered, or of the sun where theta_v stands beside it

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "lobefit/base/text/text.h"
+#include "lobefit/io/csv/names/name_rules.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 namespace {
@@ -28,11 +30,14 @@ class AngleFinder {
         head_(header.head_coordinate) {}
 
   void Find() {
+    ResolveZeniths();
+    ResolvePlanetary();
     DropCosines();
     ChooseUnit();
     ResolveLetters();
     ResolveDifferences();
     ResolveLone();
+    ResolveSurface();
     ResolveViewerZero();
     ResolvePhase();
     DropRedundant();
@@ -120,6 +125,76 @@ class AngleFinder {
     const bool detector = Column(C::kThetaD) != nullptr;
     Become(C::kPhiD, detector ? C::kPhiO : C::kDeltaPhi);
     Become(C::kThetaD, C::kThetaO);
+  }
+
+  // "src_z,src_a,view_z,view_a": zenith and azimuth of a direction, of which no x and y are given.
+  void ResolveZeniths() {
+    const auto words = [](const CsvColumn& column) { return SplitName(column.name).words; };
+    const auto find = [&](const std::string& head, std::initializer_list<std::string_view> tails) -> CsvColumn* {
+      for (CsvColumn& column : columns_) {
+        const NameList own = words(column);
+        if (own.size() == 2 && own[0] == head && std::find(tails.begin(), tails.end(), own[1]) != tails.end())
+          return &column;
+      }
+      return nullptr;
+    };
+    for (CsvColumn& zenith : columns_) {
+      const NameList own = words(zenith);
+      if (own.size() != 2 || own[1] != "z" || !(IsLightWord(own[0]) || IsViewerWord(own[0]))) continue;
+      CsvColumn* azimuth = find(own[0], {"a", "az"});
+      if (azimuth == nullptr || find(own[0], {"x"}) != nullptr) continue;
+      const bool light = IsLightWord(own[0]);
+      for (const auto& [column, coordinate] :
+           {std::pair{&zenith, light ? C::kThetaI : C::kThetaO}, std::pair{azimuth, light ? C::kPhiI : C::kPhiO}}) {
+        column->role = ColumnRole::kCoordinate;
+        column->coordinate = coordinate;
+      }
+    }
+  }
+
+  CsvColumn* Named(std::string_view name) {
+    const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const CsvColumn& column) {
+      return Joined(SplitName(column.name).words) == name;
+    });
+    return found == columns_.end() ? nullptr : &*found;
+  }
+
+  // "i,e,g" of planetary work: incidence, emission, phase; or "i,e" beside an azimuth.
+  void ResolvePlanetary() {
+    CsvColumn* in = Named("i");
+    CsvColumn* out = Named("e");
+    if (in == nullptr || out == nullptr || in->role != ColumnRole::kUnknown || out->role != ColumnRole::kUnknown)
+      return;
+    CsvColumn* third = nullptr;
+    C meaning = C::kPhase;
+    for (const std::string_view name : {"g", "alpha"}) {
+      if (third == nullptr) third = Named(name);
+    }
+    if (third == nullptr && (third = Named("psi")) != nullptr) meaning = C::kPhi;
+    if (third == nullptr && Column(C::kPhi) == nullptr && Column(C::kPhase) == nullptr &&
+        Column(C::kDeltaPhi) == nullptr)
+      return;
+    in->role = out->role = ColumnRole::kCoordinate;
+    in->coordinate = C::kThetaI;
+    out->coordinate = C::kThetaO;
+    if (third == nullptr) return;
+    third->role = ColumnRole::kCoordinate;
+    third->coordinate = meaning;
+  }
+
+  // Where a sentence of the file says that polar angles count from the surface. An explicit choice goes first.
+  bool CountsFromSurface(C coordinate) const {
+    const bool light = coordinate == C::kThetaI;
+    if (!light && coordinate != C::kThetaO) return false;
+    return (light ? header_.keys.light_from_surface : header_.keys.viewer_from_surface) &&
+           options_.columns.find(light ? "theta_i=" : "theta_o=") == std::string::npos;
+  }
+  void ResolveSurface() {
+    for (CsvColumn& column : columns_) {
+      if ((column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed) &&
+          column.form == AngleForm::kPolar && CountsFromSurface(column.coordinate))
+        column.form = AngleForm::kElevation;
+    }
   }
 
   bool HasLight() { return Known(C::kThetaI) || Known(C::kBeta0); }
@@ -251,6 +326,43 @@ class AngleFinder {
     }
   }
 
+  // Of an offset from the mirror direction. That of "aspecular" is a convention that not all keep to: where the first
+  // rows would lie beyond the horizon by it, and none without, it is the other one.
+  bool IsTowardsLight(const CsvColumn& column) {
+    if (!column.aspecular || column.magnitude) return column.reversed;
+    const CsvColumn* in = Column(C::kThetaI);
+    const FixedCoordinate* fixed = header_.keys.Find(C::kThetaI);
+    std::size_t beyond_towards = 0, beyond_away = 0;
+    for (const std::vector<std::string>& row : header_.first_rows) {
+      const double theta_i = in != nullptr      ? Angle(row, in)
+                             : fixed != nullptr ? fixed->number * Scale(C::kThetaI, fixed->unit)
+                                                : std::nan("");
+      const double offset = Angle(row, &column);
+      beyond_towards += std::fabs(theta_i - offset) > kPi / 2 ? 1 : 0;
+      beyond_away += std::fabs(theta_i + offset) > kPi / 2 ? 1 : 0;
+    }
+    const bool towards = beyond_towards == 0 || beyond_away > 0;
+    const std::string away = towards ? "theta_o - theta_i" : "theta_i - theta_o";
+    notes_.remarks.push_back(QuotedName(column) + " counts from the mirror direction " +
+                             (towards ? "towards the light, as in 45as15" : "away from the light") + "; --columns \"" +
+                             away + "=" + Excerpt(column.name) + "\" counts it the other way");
+    return towards;
+  }
+
+  // Vectors along the propagation of the light point into the surface.
+  bool PointsDown() {
+    const CsvColumn* in = Column(C::kWiZ);
+    const CsvColumn* out = Column(C::kWoZ);
+    if (in == nullptr || out == nullptr || options_.incident_sense || header_.keys.incident_sense) return false;
+    std::size_t rows = 0, down = 0;
+    for (const std::vector<std::string>& row : header_.first_rows) {
+      const double z_i = Angle(row, in), z_o = Angle(row, out);
+      rows += std::isnan(z_i + z_o) ? 0 : 1;
+      down += z_i < 0 && z_o > 0 ? 1 : 0;
+    }
+    return rows > 0 && down == rows;
+  }
+
   void Give() {
     DirectionReader& directions = layout_.directions;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -267,7 +379,7 @@ class AngleFinder {
       }
       directions.Give(column.coordinate, Scale(column), column.form);
       if (column.coordinate == C::kFromSpecular || column.coordinate == C::kBetaOffset)
-        directions.SetOffset(column.reversed, column.magnitude);
+        directions.SetOffset(IsTowardsLight(column), column.magnitude);
       layout_.coordinates.emplace_back(column.coordinate, i);
     }
     const CsvColumn* first = nullptr;
@@ -279,10 +391,15 @@ class AngleFinder {
              " have different units; use one unit");
       directions.Give(column.coordinate, Scale(column), column.form);
     }
-    if (head_) directions.Give(*head_, Scale(*head_, std::nullopt));
+    if (head_) {
+      directions.Give(*head_, Scale(*head_, std::nullopt),
+                      CountsFromSurface(*head_) ? AngleForm::kElevation : AngleForm::kPolar);
+    }
     for (const FixedCoordinate& fixed : header_.keys.fixed) {
       if (directions.Has(fixed.coordinate)) continue;
-      directions.Give(fixed.coordinate, Scale(fixed.coordinate, fixed.unit), fixed.form);
+      const bool from_surface = fixed.form == AngleForm::kPolar && CountsFromSurface(fixed.coordinate);
+      directions.Give(fixed.coordinate, Scale(fixed.coordinate, fixed.unit),
+                      from_surface ? AngleForm::kElevation : fixed.form);
       layout_.fixed[static_cast<std::size_t>(fixed.coordinate)] = fixed.number;
       const std::string& mention = header_.keys.mention_of_incidence;
       if (fixed.coordinate == C::kThetaI && !mention.empty()) {
@@ -331,10 +448,17 @@ class AngleFinder {
     }
     const IncidentSense sense =
         options_.incident_sense.value_or(header_.keys.incident_sense.value_or(IncidentSense::kTowardsSource));
-    directions.SetPropagation(sense == IncidentSense::kPropagation);
-    notes_.conventions["incident"] = Name(sense) + (options_.incident_sense       ? " (option)"
-                                                    : header_.keys.incident_sense ? " (header)"
-                                                                                  : " (default)");
+    const bool down = PointsDown();
+    directions.SetPropagation(sense == IncidentSense::kPropagation || down);
+    if (down) {
+      notes_.remarks.push_back(
+          "the light's vectors point into the surface, so they are taken as along its propagation");
+    }
+    notes_.conventions["incident"] =
+        Name(down ? IncidentSense::kPropagation : sense) + (down                          ? " (by the first rows)"
+                                                            : options_.incident_sense     ? " (option)"
+                                                            : header_.keys.incident_sense ? " (header)"
+                                                                                          : " (default)");
     if (notes_.conventions.count("azimuths") == 0 && !directions.Azimuths().empty())
       notes_.conventions["azimuths"] = directions.Azimuths();
   }

@@ -11,6 +11,7 @@
 #include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/row_conditions.h"
+#include "lobefit/io/csv/head/value_mention.h"
 #include "lobefit/io/csv/names/name_rules.h"
 #include "lobefit/io/csv/names/polarised_columns.h"
 #include "lobefit/io/csv/rows/angles.h"
@@ -283,6 +284,12 @@ class LayoutBuilder {
       if (!candidates.empty())
         Fail("several columns can be the value: " + Excerpt(Join(names), 200) + "; choose one with --value-column");
       const std::size_t other = FindPossibleValue(columns_);
+      // "Reflectance" below "BRF Values".
+      if (other < columns_.size() && columns_[other].role == ColumnRole::kOtherValue && !options_.value_kind &&
+          FindValueMention(header_.titles).kind) {
+        columns_[other].role = ColumnRole::kValue;
+        return ChooseChannels();
+      }
       if (other < columns_.size()) {
         Fail("the column " + QuotedName(columns_[other]) +
              " can be f_r, pi f_r, f_r times a cosine or something else; say it with --value-column \"" +
