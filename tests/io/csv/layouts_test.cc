@@ -317,5 +317,39 @@ TEST(CsvLayouts, WhereAnAzimuthCountsFromInItsName) {
             std::string::npos);
 }
 
+TEST(CsvLayouts, ColumnsOfRepetitions) {
+  const Measurement m = ReadText("theta_i,theta_o,BRDF 1,BRDF 2,BRDF mean,BRDF std\n30,40,1,3,2,0.5\n");
+  EXPECT_EQ(m.samples.values[0][0], 2);
+  EXPECT_EQ(m.samples.sigma.size(), 1U);
+  const std::string message = MessageOf("theta_i,theta_o,BRDF_1,BRDF_2\n30,40,1,3\n");
+  EXPECT_NE(message.find("--value-column \"BRDF_1\""), std::string::npos) << message;
+  EXPECT_NE(message.find("several samples"), std::string::npos) << message;
+  ReadOptions options;
+  options.value_column = "BRDF_2";
+  EXPECT_EQ(ReadText("theta_i,theta_o,BRDF_1,BRDF_2\n30,40,1,3\n", options).samples.values[0][0], 3);
+}
+
+TEST(CsvLayouts, ValuesNamedAmongOtherWords) {
+  EXPECT_NEAR(ReadText("# Relative Azimuth, Viewing Zenith, Incident Zenith, Wavelength, Panel BRF\n"
+                       "52,14,22,800,1.09\n129,50,53,800,1.05\n")
+                  .samples.values[0][0],
+              1.09 / kPi, 1e-12);
+  ReadOptions options;
+  options.value_column = "Panel BRF";
+  EXPECT_NEAR(ReadText("theta_i,theta_o,Panel BRF,Tile BRF\n30,40,1,2\n", options).samples.values[0][0], 1 / kPi,
+              1e-12);
+  for (const char* name : {"BRDF model", "reference BRDF", "BRDF_raw", "BRDF fit"})
+    EXPECT_NE(MessageOf(std::string("theta_i,theta_o,") + name + "\n30,40,1\n"), "(was read)") << name;
+  EXPECT_NE(MessageOf("theta_i,theta_o,Sample A,Sample B\n30,40,1,2\n").find("--value-column \"Sample A\""),
+            std::string::npos);
+}
+
+TEST(CsvLayouts, GeometriesInOneWord) {
+  EXPECT_NE(MessageOf("Wavelength,r45as-15,r45as15\n550,1,2\n560,1,2\n").find("AOI 45, aspecular 15"),
+            std::string::npos);
+  EXPECT_NE(MessageOf("Geometry,400nm,500nm\n45:0,1,2\n45:30,1,2\n").find("theta_i 45, theta_o 0"), std::string::npos);
+  EXPECT_NE(MessageOf("Geometry,BRDF\n45/0,1\n45/30,2\n").find("theta_i 45, theta_o 0"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace lobefit

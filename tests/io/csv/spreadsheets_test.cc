@@ -314,5 +314,28 @@ TEST(Spreadsheets, NumbersWrittenForPeople) {
   }
 }
 
+// "1,234" is one thousand to some and a little more than one to others.
+TEST(CsvSpreadsheets, CommasBetweenThousands) {
+  EXPECT_NE(MessageOf("theta_i,theta_o,brdf\n10,20,\"1,234\"\n10,30,999\n").find("one between thousands"),
+            std::string::npos);
+  EXPECT_NEAR(ReadText("theta_i,theta_o,brdf\n10,20,\"1,234\"\n10,30,\"0,999\"\n").samples.values[0][0], 1.234, 1e-12);
+  EXPECT_NEAR(ReadText("theta_i;theta_o;brdf\n10;20;1,234\n10;30;2,345\n").samples.values[0][0], 1.234, 1e-12);
+}
+
+TEST(CsvSpreadsheets, EncodingsOfOtherScripts) {
+  const std::string rows = ",brdf\n30,40,1\n";
+  // "incident angle, reflected angle" in GB18030, Shift-JIS, EUC-KR and Windows-1251.
+  for (const auto& [name, head] : {std::pair{"GB18030", "\xc8\xeb\xc9\xe4\xbd\xc7,\xb7\xb4\xc9\xe4\xbd\xc7"},
+                                   {"SHIFT_JIS", "\x93\xfc\x8e\xcb\x8a\x70,\x94\xbd\x8e\xcb\x8a\x70"},
+                                   {"EUC-KR", "\xc0\xd4\xbb\xe7\xb0\xa2,\xb9\xdd\xbb\xe7\xb0\xa2"},
+                                   {"WINDOWS-1251",
+                                    "\xf3\xe3\xee\xeb \xef\xe0\xe4\xe5\xed\xe8\xff,"
+                                    "\xf3\xe3\xee\xeb \xee\xf2\xf0\xe0\xe6\xe5\xed\xe8\xff"}}) {
+    const Measurement m = ReadText(head + rows);
+    ExpectSample(m, 0, 30, 0, 40, 180, 1);
+    EXPECT_TRUE(HasRemark(m, name)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace lobefit

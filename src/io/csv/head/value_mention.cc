@@ -148,6 +148,16 @@ void TakeQuestion(const std::string& question, ValueMention* mention) {
 
 }  // namespace
 
+std::optional<ValueKind> KindNamedIn(std::string_view text) {
+  static constexpr std::array<std::string_view, 15> kOthers = {"reference", "model", "fit",     "error", "dev",
+                                                               "ratio",     "raw",   "dark",    "unc",   "sigma",
+                                                               "std",       "diff",  "predict", "simul", "theor"};
+  const std::string lower = ToLower(text);
+  if (HoldsAnyPart(lower, kOthers) || SpeaksOfAnother(lower) || lower.find("cos") != std::string::npos) return {};
+  const Found found = KindsOf(text);
+  return found.kinds.size() == 1 ? std::optional(found.kinds[0]) : std::nullopt;
+}
+
 ValueMention FindValueMention(const std::vector<std::string>& lines) {
   ValueMention mention;
   bool both = false;

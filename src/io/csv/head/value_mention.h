@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lobefit/io/text/format.h"
@@ -21,6 +22,10 @@ struct ValueMention {
   std::string transmission;  // a line that speaks of light that passes the sample, and of no other
   std::string polarised;     // a line that names one polarisation
 };
+
+// The kind of value that a name of a column or a title holds among other words: "Panel BRF". Empty where it holds none,
+// several, or words for a value that is not the measured one ("BRDF model", "reference BRF").
+std::optional<ValueKind> KindNamedIn(std::string_view text);
 
 // `lines`: titles and comments of the head, without their marks.
 ValueMention FindValueMention(const std::vector<std::string>& lines);

@@ -5,6 +5,8 @@
 
 #include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/names/name_rules.h"
+#include "lobefit/io/csv/rows/geometries.h"
+#include "lobefit/io/csv/rows/short_names.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
 #include "lobefit/math/vec.h"
@@ -30,8 +32,7 @@ class AngleFinder {
         head_(header.head_coordinate) {}
 
   void Find() {
-    ResolveZeniths();
-    ResolvePlanetary();
+    NameShortAngles(&columns_);
     DropCosines();
     ChooseUnit();
     ResolveLetters();
@@ -125,61 +126,6 @@ class AngleFinder {
     const bool detector = Column(C::kThetaD) != nullptr;
     Become(C::kPhiD, detector ? C::kPhiO : C::kDeltaPhi);
     Become(C::kThetaD, C::kThetaO);
-  }
-
-  // "src_z,src_a,view_z,view_a": zenith and azimuth of a direction, of which no x and y are given.
-  void ResolveZeniths() {
-    const auto words = [](const CsvColumn& column) { return SplitName(column.name).words; };
-    const auto find = [&](const std::string& head, std::initializer_list<std::string_view> tails) -> CsvColumn* {
-      for (CsvColumn& column : columns_) {
-        const NameList own = words(column);
-        if (own.size() == 2 && own[0] == head && std::find(tails.begin(), tails.end(), own[1]) != tails.end())
-          return &column;
-      }
-      return nullptr;
-    };
-    for (CsvColumn& zenith : columns_) {
-      const NameList own = words(zenith);
-      if (own.size() != 2 || own[1] != "z" || !(IsLightWord(own[0]) || IsViewerWord(own[0]))) continue;
-      CsvColumn* azimuth = find(own[0], {"a", "az"});
-      if (azimuth == nullptr || find(own[0], {"x"}) != nullptr) continue;
-      const bool light = IsLightWord(own[0]);
-      for (const auto& [column, coordinate] :
-           {std::pair{&zenith, light ? C::kThetaI : C::kThetaO}, std::pair{azimuth, light ? C::kPhiI : C::kPhiO}}) {
-        column->role = ColumnRole::kCoordinate;
-        column->coordinate = coordinate;
-      }
-    }
-  }
-
-  CsvColumn* Named(std::string_view name) {
-    const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const CsvColumn& column) {
-      return Joined(SplitName(column.name).words) == name;
-    });
-    return found == columns_.end() ? nullptr : &*found;
-  }
-
-  // "i,e,g" of planetary work: incidence, emission, phase; or "i,e" beside an azimuth.
-  void ResolvePlanetary() {
-    CsvColumn* in = Named("i");
-    CsvColumn* out = Named("e");
-    if (in == nullptr || out == nullptr || in->role != ColumnRole::kUnknown || out->role != ColumnRole::kUnknown)
-      return;
-    CsvColumn* third = nullptr;
-    C meaning = C::kPhase;
-    for (const std::string_view name : {"g", "alpha"}) {
-      if (third == nullptr) third = Named(name);
-    }
-    if (third == nullptr && (third = Named("psi")) != nullptr) meaning = C::kPhi;
-    if (third == nullptr && Column(C::kPhi) == nullptr && Column(C::kPhase) == nullptr &&
-        Column(C::kDeltaPhi) == nullptr)
-      return;
-    in->role = out->role = ColumnRole::kCoordinate;
-    in->coordinate = C::kThetaI;
-    out->coordinate = C::kThetaO;
-    if (third == nullptr) return;
-    third->role = ColumnRole::kCoordinate;
-    third->coordinate = meaning;
   }
 
   // Where a sentence of the file says that polar angles count from the surface. An explicit choice goes first.
@@ -420,6 +366,10 @@ class AngleFinder {
           "', which does not say whose azimuth it is; name it phi_i, phi_o or dphi (180 degrees is the mirror's side)");
     }
     const std::string missing = directions.Missing();
+    if (!missing.empty()) {
+      const std::string geometry = DescribeGeometries(columns_, header_.first_rows);
+      if (!geometry.empty()) Fail(geometry);
+    }
     if (!missing.empty()) {
       std::vector<std::string> names;
       for (const CsvColumn& column : columns_) names.push_back(Excerpt(column.name));
