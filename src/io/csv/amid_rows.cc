@@ -16,6 +16,7 @@ void AmidRows::TakeWords(std::string_view line, std::size_t number, const RowPar
   SplitCsvLine(line, header_.separator, &fields);
   if (Trim(line) == Trim(header_.names) || AreNamesAgain(fields) || AreUnitsAgain(fields)) {
     // What stands above names is the head of a page.
+    if (page_.empty() && !message_.empty()) page_ = "'" + text_ + "' in line " + std::to_string(line_);
     message_.clear();
     words_ = 0;
     return;

@@ -29,6 +29,8 @@ class AmidRows {
   [[noreturn]] void Fail() const;
   // What is said of a footer.
   std::string Remark() const;
+  // The first words that stood above names amid the rows: "'Sample B' in line 40". Empty where there were none.
+  const std::string& page() const { return page_; }
 
  private:
   bool AreNamesAgain(const std::vector<std::string_view>& fields) const;
@@ -43,6 +45,7 @@ class AmidRows {
   Coordinates& at_;
   std::size_t words_ = 0, line_ = 0;
   std::string message_, text_;
+  std::string page_;
 };
 
 }  // namespace lobefit

@@ -131,6 +131,10 @@ class CsvReader {
       const std::string distinctions = DescribeDistinctions(file_, header_, layout_);
       if (!distinctions.empty()) {
         notes_.remarks.push_back(distinctions);
+      } else if (!amid_rows_.page().empty()) {
+        notes_.remarks.push_back("directions occur again below " + amid_rows_.page() +
+                                 ": where that begins another sample, put the parts into files of their own; only the "
+                                 "first row of each pair of directions was kept");
       } else if (measurement.remarks.empty()) {  // by the builder, of repetitions that are unlike
         notes_.remarks.emplace_back(
             "directions occur again; --repeated mean averages their rows instead of keeping the first");

@@ -351,5 +351,23 @@ TEST(CsvLayouts, GeometriesInOneWord) {
   EXPECT_NE(MessageOf("Geometry,BRDF\n45/0,1\n45/30,2\n").find("theta_i 45, theta_o 0"), std::string::npos);
 }
 
+TEST(CsvLayouts, FixedAnglesInTheLineAbove) {
+  const Measurement m = ReadText("AOI,10,10,30,30\nangle,BRDF,std,BRDF,std\n20,2,0.1,3,0.3\n40,4,0.4,5,0.5\n");
+  ASSERT_EQ(m.samples.size(), 4U);
+  ExpectSample(m, 1, 30, 0, 20, 180, 3);
+  EXPECT_EQ(m.samples.sigma.size(), 4U);
+  // Cells that were merged, decimal commas, another kind.
+  const Measurement merged = ReadText("AOI;10;;30;\nangle;BRF;std;BRF;std\n20;2,5;0,1;3;0,3\n");
+  ExpectSample(merged, 0, 10, 0, 20, 180, 2.5 / kPi);
+  ExpectSample(ReadText("theta_o,i=10,i=30\n20,2,3\n"), 1, 30, 0, 20, 180, 3);
+}
+
+TEST(CsvLayouts, PartsOfOtherSamples) {
+  const std::string names = "theta_i,theta_o,brdf\n";
+  const Measurement m =
+      ReadText("Sample A\n" + names + "30,40,1\n30,50,1\n\nSample B\n" + names + "30,40,1.2\n30,50,1.2\n");
+  EXPECT_TRUE(HasRemark(m, "below 'Sample B' in line 6"));
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -84,6 +84,33 @@ class HeaderReader {
     return SetNames(at, std::move(columns));
   }
 
+  // "AOI,10,10,30,30" over "angle,BRDF,std,BRDF,std": one table of columns at fixed angles, whose name and numbers stand
+  // in the line above. Names them as one line would: "AOI=10", "AOI=10 err".
+  void TakeFixedAbove(std::size_t at, std::vector<CsvColumn>* columns) {
+    if (at == 0 || lines_[at - 1].comment || columns->size() < 3) return;
+    const Fields above = SplitFields(lines_[at - 1].text, header_.separator);
+    if (above.size() != columns->size()) return;
+    std::string storage;
+    const std::string head(Unquoted(above[0], &storage));
+    const CsvColumn coordinate = ClassifyColumn(head);
+    if (coordinate.role != ColumnRole::kCoordinate || (*columns)[0].role != ColumnRole::kCoordinate) return;
+    std::string number;
+    std::vector<CsvColumn> named = {(*columns)[0]};
+    std::size_t values = 0;
+    for (std::size_t i = 1; i < above.size(); ++i) {
+      const CsvColumn& own = (*columns)[i];
+      if (!Trim(above[i]).empty()) number = std::string(NumberOfCell(Unquoted(above[i], &storage)));
+      const bool spread = own.role == ColumnRole::kSigma;
+      if (!ParseCsvNumber(number, header_.decimal_mark) || (own.role != ColumnRole::kValue && !spread)) return;
+      std::replace(number.begin(), number.end(), ',', '.');
+      named.push_back(ClassifyColumn(head + "=" + number + (spread ? " err" : "")));
+      named.back().value_kind = own.value_kind;
+      named.back().value_scale = own.value_scale;
+      values += spread ? 0 : 1;
+    }
+    if (values > 1) *columns = std::move(named);
+  }
+
   bool TryNames(std::size_t at) {
     const std::string_view text = lines_[at].comment ? CommentText(lines_[at].text) : lines_[at].text;
     const Fields fields = SplitNames(text, header_.separator, row_fields_);
@@ -97,6 +124,7 @@ class HeaderReader {
       header_.head_coordinate = head;
       return SetNames(at, std::move(columns));
     }
+    TakeFixedAbove(at, &columns);
     // Angles under merged headings: "Illumination;;Viewing" over "theta;phi;theta;phi".
     std::size_t lone = 0;
     for (const CsvColumn& column : columns) {

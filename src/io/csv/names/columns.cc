@@ -294,7 +294,9 @@ bool ClassifyFixed(const NameList& words, CsvColumn* column) {
     column->angle_unit = ParseAngleUnit(unit);
     return true;
   }
-  const CsvColumn left = ClassifyName(Joined(rest), Fixed::kNot);
+  // "i=10" of planetary work and of tables of lighting.
+  const bool letter = rest.size() == 1 && rest[0] == "i" && column->name.find('=') != std::string::npos;
+  const CsvColumn left = ClassifyName(letter ? "theta_i" : Joined(rest), Fixed::kNot);
   if (left.role != ColumnRole::kCoordinate) return false;
   column->role = ColumnRole::kFixed;
   column->coordinate = left.coordinate;
