@@ -338,10 +338,26 @@ TEST(CsvLayouts, ValuesNamedAmongOtherWords) {
   options.value_column = "Panel BRF";
   EXPECT_NEAR(ReadText("theta_i,theta_o,Panel BRF,Tile BRF\n30,40,1,2\n", options).samples.values[0][0], 1 / kPi,
               1e-12);
-  for (const char* name : {"BRDF model", "reference BRDF", "BRDF_raw", "BRDF fit"})
+  for (const char* name : {"BRDF (dBsr)", "BRDF model", "reference BRDF", "BRDF_raw", "BRDF fit"})
     EXPECT_NE(MessageOf(std::string("theta_i,theta_o,") + name + "\n30,40,1\n"), "(was read)") << name;
   EXPECT_NE(MessageOf("theta_i,theta_o,Sample A,Sample B\n30,40,1,2\n").find("--value-column \"Sample A\""),
             std::string::npos);
+}
+
+TEST(CsvLayouts, ReflectancesAtWavelengths) {
+  for (const char* names :
+       {"R450,R550", "refl_450,refl_550", "rho 450nm,rho 550nm", "reflectance_450nm,reflectance_550nm"}) {
+    const std::string text = std::string("theta_i,theta_o,") + names + "\n30,40,1,2\n";
+    EXPECT_NE(MessageOf(text).find("--value-kind pi-f or --value-kind f"), std::string::npos) << names;
+    ReadOptions options;
+    options.value_kind = ValueKind::kReflectanceFactor;
+    const Measurement m = ReadText(text, options);
+    ASSERT_EQ(m.channels.wavelengths_nm, (std::vector<double>{450, 550})) << names;
+    EXPECT_NEAR(m.samples.values[1][0], 2 / kPi, 1e-12) << names;
+    EXPECT_NEAR(ReadText("BRF Values\n" + text).samples.values[1][0], 2 / kPi, 1e-12) << names;
+  }
+  EXPECT_TRUE(HasRemark(ReadText("SZA,VZA,450,550\n30,40,1,2\n"), "are pi f_r: --value-kind pi-f"));
+  EXPECT_FALSE(HasRemark(ReadText("theta_i,theta_o,450nm,550nm\n30,40,1,2\n"), "pi-f"));
 }
 
 TEST(CsvLayouts, GeometriesInOneWord) {

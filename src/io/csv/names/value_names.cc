@@ -107,6 +107,7 @@ constexpr auto kValues = std::to_array<ValueName>({
     {"fattore_riflettanza", ValueKind::kReflectanceFactor},
     {"fattore_radianza", ValueKind::kReflectanceFactor},
     {"fator_refletancia", ValueKind::kReflectanceFactor},
+    {"luminance_factor", ValueKind::kReflectanceFactor},  // of colorimetry
     {"radiance_factor_beta", ValueKind::kReflectanceFactor},
     {"beta_radiance_factor", ValueKind::kReflectanceFactor},
     {"intensity", ValueKind::kIntensity},

@@ -289,6 +289,13 @@ class LayoutBuilder {
       }
       if (!candidates.empty())
         Fail("several columns can be the value: " + Excerpt(Join(names), 200) + "; choose one with --value-column");
+      const bool known = options_.value_kind || header_.keys.value_kind || FindValueMention(header_.titles).kind;
+      const std::vector<std::string> reflectances = TakeReflectances(known, &columns_);
+      if (!reflectances.empty() && known) return ChooseChannels();
+      if (!reflectances.empty()) {
+        Fail("the columns " + Excerpt(Join(reflectances), 80) +
+             " can be reflectance factors, pi f_r, or f_r; say it with --value-kind pi-f or --value-kind f");
+      }
       const std::size_t other = FindPossibleValue(columns_);
       // "Reflectance" below "BRF Values".
       if (other < columns_.size() && columns_[other].role == ColumnRole::kOtherValue && !options_.value_kind &&

@@ -1,6 +1,7 @@
 #include "lobefit/io/csv/rows/value_columns.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -47,6 +48,30 @@ std::string SetRepetitionsAside(bool chosen, std::vector<CsvColumn>* columns) {
   return "";
 }
 
+std::vector<std::string> TakeReflectances(bool kind_is_known, std::vector<CsvColumn>* columns) {
+  static constexpr std::array<std::string_view, 8> kWords = {"r",           "rho",          "refl",       "ref",
+                                                             "reflectance", "reflectivity", "reflektanz", "hcrf"};
+  std::vector<std::string> names;
+  for (CsvColumn& column : *columns) {
+    if (column.role != ColumnRole::kUnknown) continue;
+    NameList words = SplitName(column.name).words;
+    if (words.size() == 1) {  // "R550"
+      const std::size_t digit = words[0].find_first_of("0123456789");
+      if (digit == std::string::npos || digit == 0) continue;
+      words = {words[0].substr(0, digit), words[0].substr(digit)};
+    }
+    CsvColumn channel = ClassifyColumn(words.back());
+    if (words.size() != 2 || !HoldsWord(kWords, words[0]) || channel.role != ColumnRole::kChannel ||
+        !(channel.wavelength_nm > 0))
+      continue;
+    names.push_back(Excerpt(column.name));
+    if (!kind_is_known) continue;
+    channel.name = std::move(column.name);
+    column = std::move(channel);
+  }
+  return names;
+}
+
 bool TakeOnlyNamed(std::vector<CsvColumn>* columns) {
   CsvColumn* only = nullptr;
   for (CsvColumn& column : *columns) {
@@ -54,7 +79,10 @@ bool TakeOnlyNamed(std::vector<CsvColumn>* columns) {
     if (only != nullptr) return false;  // "BRDF_raw" beside "BRDF_corrected"
     only = &column;
   }
-  if (only == nullptr || !KindNamedIn(only->name)) return false;
+  // What stands in brackets or is a formula is not passed over.
+  if (only == nullptr || only->name.find_first_of("()[]{}<>/*^%|=+0123456789") != std::string::npos ||
+      !KindNamedIn(only->name))
+    return false;
   only->role = ColumnRole::kValue;
   only->value_kind = KindNamedIn(only->name);
   const std::string unit = std::exchange(only->unit, {});

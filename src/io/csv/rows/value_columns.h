@@ -18,6 +18,10 @@ std::string SetRepetitionsAside(bool chosen, std::vector<CsvColumn>* columns);
 // does.
 bool TakeOnlyNamed(std::vector<CsvColumn>* columns);
 
+// "R550,R650", "refl_550nm": the names of reflectances at wavelengths, which can be f_r or pi f_r. Takes them as channels
+// where the kind is known.
+std::vector<std::string> TakeReflectances(bool kind_is_known, std::vector<CsvColumn>* columns);
+
 // Names of columns that are not known and hold numbers.
 std::vector<std::string> FindUnknownNumbers(const CsvHeader& header, const std::vector<CsvColumn>& columns);
 

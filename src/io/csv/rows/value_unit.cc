@@ -1,5 +1,6 @@
 #include "lobefit/io/csv/rows/value_unit.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "lobefit/base/error.h"
@@ -57,6 +58,16 @@ void FindScale(const InputFile& file, const CsvHeader& header, const ReadOptions
   }
 }
 
+// By the names of its angles: SZA, "solar zenith".
+bool IsOfSunlight(const std::vector<CsvColumn>& columns) {
+  return std::any_of(columns.begin(), columns.end(), [](const CsvColumn& column) {
+    const std::string name = ToLower(column.name);
+    return column.role == ColumnRole::kCoordinate &&
+           (name.find("sza") != std::string::npos || name.find("solar") != std::string::npos ||
+            name.starts_with("sun"));
+  });
+}
+
 // What no value-kind can cure.
 void RemarkOnLight(const ValueMention& mention, Measurement* notes) {
   if (!mention.transmission.empty()) {
@@ -94,6 +105,11 @@ void FindValueUnit(const InputFile& file, const CsvHeader& header, const ReadOpt
     }
   } else if (!mention.question.empty()) {
     notes->remarks.push_back(mention.question);
+  } else if (column.role == ColumnRole::kChannel && IsOfSunlight(columns)) {
+    notes->remarks.push_back(
+        "the column " + QuotedName(column) +
+        " does not say what its values are, they are taken as f_r; reflectance factors, as most of "
+        "sunlight are (BRF, HDRF), are pi f_r: --value-kind pi-f");
   }
   RemarkOnLight(mention, notes);
   const bool percent = column.value_scale && column.value_scale->factor == 0.01;
