@@ -77,7 +77,11 @@ bool AmidRows::ReadKeyAmidRows(std::size_t number, std::string_view comment,
                                const std::vector<std::string_view>& fields) {
   if (!comment.empty() && comment.find_first_of(":=") == std::string_view::npos) {
     RequireKeptUnits(number, FindColumnUnits(comment));
-    return false;
+    // "# theta_i 30" before the next part, as the head states it of the first; others are prose.
+    constexpr std::size_t kLongest = 60;
+    const bool stated = !header_.keys.fixed.empty() || header_.keys.wavelength_nm;
+    if (!stated || comment.size() > kLongest || comment.find_first_of("0123456789") == std::string_view::npos)
+      return false;
   }
   CsvKeys keys = header_.keys;
   if (!(fields.empty() ? ReadKey(file_, number, comment, &keys) : ReadKey(file_, number, fields, &keys))) return false;

@@ -378,6 +378,14 @@ TEST(CsvLayouts, FixedAnglesInTheLineAbove) {
   ExpectSample(ReadText("theta_o,i=10,i=30\n20,2,3\n"), 1, 30, 0, 20, 180, 3);
 }
 
+// gnuplot's blocks, whose comments state the angle without a colon.
+TEST(CsvLayouts, AnglesInCommentsAmidRows) {
+  const Measurement m =
+      ReadText("# theta_o brdf\n# theta_i 10\n20 2\n30 3\n\n\n# theta_i 30\n20 4\n30 5\n# done in 30 minutes\n");
+  ASSERT_EQ(m.samples.size(), 4U);
+  ExpectSample(m, 2, 30, 0, 20, 180, 4);
+}
+
 TEST(CsvLayouts, PartsOfOtherSamples) {
   const std::string names = "theta_i,theta_o,brdf\n";
   const Measurement m =
