@@ -47,16 +47,14 @@ class UnlikeRepeats {
     if (greater_.empty()) return "";
     double largest = 0;
     for (const double value : samples_.values[0]) largest = std::max(largest, value);
-    std::size_t bright = 0, unlike = 0;
-    for (std::size_t k = 0; k < greater_.size(); ++k) {
-      if (!(greater_[k] > 0.02 * largest)) continue;
-      ++bright;
-      unlike += greater_[k] > 2 * lesser_[k] ? 1 : 0;
-    }
-    if (5 * unlike <= bright) return "";
-    return "directions occur again, and " + std::to_string(unlike) + " of " + std::to_string(bright) +
-           " repetitions that are not dark differ from the first by more than a factor of two: is something missing "
-           "that tells them apart (an azimuth, a wavelength, the sample)? Only the first of each are kept";
+    std::size_t unlike = 0;
+    for (std::size_t k = 0; k < greater_.size(); ++k)
+      unlike += greater_[k] > 0.02 * largest && greater_[k] > 2 * lesser_[k] ? 1 : 0;
+    if (5 * unlike <= greater_.size()) return "";
+    return "directions occur again, and " + std::to_string(unlike) + " of " + std::to_string(greater_.size()) +
+           " repetitions differ from the first by more than a factor of two: is something missing that tells them "
+           "apart "
+           "(an azimuth, a wavelength, the sample)? Only the first of each are kept";
   }
 
  private:

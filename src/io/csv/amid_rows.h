@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +35,7 @@ class AmidRows {
   const std::string& page() const { return page_; }
 
  private:
+  bool MayStateAnAngle(std::string_view comment) const;
   bool AreNamesAgain(const std::vector<std::string_view>& fields) const;
   bool AreUnitsAgain(const std::vector<std::string_view>& fields) const;
   // Throws InputError for a unit of a column that is not that of the rows before.
@@ -46,6 +49,7 @@ class AmidRows {
   std::size_t words_ = 0, line_ = 0;
   std::string message_, text_;
   std::string page_;
+  std::set<std::string, std::less<>> prose_;  // beginnings of comments that stated nothing
 };
 
 }  // namespace lobefit

@@ -167,7 +167,7 @@ TEST(CsvConventions, CosinesOfShortNames) {
 
 TEST(CsvConventions, RepetitionsThatAreUnlike) {
   const std::string head = "theta_i,theta_o,brdf\n30,40,1\n";
-  EXPECT_TRUE(HasRemark(ReadText(head + "30,40,9\n"), "1 of 1 repetitions that are not dark differ"));
+  EXPECT_TRUE(HasRemark(ReadText(head + "30,40,9\n"), "1 of 1 repetitions differ from the first"));
   EXPECT_TRUE(HasRemark(ReadText(head + "30,40,1.1\n"), "--repeated mean averages their rows"));
 }
 
