@@ -15,11 +15,12 @@ struct Encoding {
   std::array<std::string_view, 8> words;
 };
 
-constexpr std::array<Encoding, 5> kEncodings = {{
+constexpr std::array<Encoding, 6> kEncodings = {{
     {"GB18030", {"入射", "反射", "散射", "角度", "方位", "波长", "测量", "观测"}},
     {"SHIFT_JIS", {"入射", "反射", "散乱", "角度", "方位", "波長", "測定", "受光"}},
     {"BIG5", {"入射", "反射", "散射", "角度", "方位", "波長", "量測", "觀測"}},
     {"EUC-KR", {"입사", "반사", "산란", "각도", "방위", "파장", "측정", "수광"}},
+    {"WINDOWS-1250", {"kąt", "Kąt", "pomiar", "świat", "úhel", "Úhel", "měřen", "světl"}},
     {"WINDOWS-1251", {"угол", "угл", "паден", "отраж", "азимут", "зенит", "длина", "рассея"}},
 }};
 

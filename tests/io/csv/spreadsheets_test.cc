@@ -324,10 +324,11 @@ TEST(CsvSpreadsheets, CommasBetweenThousands) {
 
 TEST(CsvSpreadsheets, EncodingsOfOtherScripts) {
   const std::string rows = ",brdf\n30,40,1\n";
-  // "incident angle, reflected angle" in GB18030, Shift-JIS, EUC-KR and Windows-1251.
+  // "incident angle, reflected angle" in GB18030, Shift-JIS, EUC-KR, Windows-1251 and Windows-1250.
   for (const auto& [name, head] : {std::pair{"GB18030", "\xc8\xeb\xc9\xe4\xbd\xc7,\xb7\xb4\xc9\xe4\xbd\xc7"},
                                    {"SHIFT_JIS", "\x93\xfc\x8e\xcb\x8a\x70,\x94\xbd\x8e\xcb\x8a\x70"},
                                    {"EUC-KR", "\xc0\xd4\xbb\xe7\xb0\xa2,\xb9\xdd\xbb\xe7\xb0\xa2"},
+                                   {"WINDOWS-1250", "k\xb9t padania,k\xb9t odbicia"},
                                    {"WINDOWS-1251",
                                     "\xf3\xe3\xee\xeb \xef\xe0\xe4\xe5\xed\xe8\xff,"
                                     "\xf3\xe3\xee\xeb \xee\xf2\xf0\xe0\xe6\xe5\xed\xe8\xff"}}) {

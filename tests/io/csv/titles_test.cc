@@ -54,9 +54,9 @@ TEST(CsvTitles, GiveWay) {
 
 // Other things that such words stand in.
 TEST(CsvTitles, ChangeNothing) {
-  for (const char* title :
-       {"BRDF of a tile", "# Calibrated against the BRF of a NIST standard", "# BRF file: tile.txt",
-        "# BRDF, computed from BRF", "# truth, factor: 2", "# Lens factor 2", "# The BRF model was not used"})
+  for (const char* title : {"BRDF of a tile", "# Calibrated against the BRF of a NIST standard", "# BRF file: tile.txt",
+                            "# BRDF, computed from BRF", "# truth, factor: 2", "# Lens factor 2", "USDA ARS soil 3",
+                            "# The BRF model was not used"})
     EXPECT_EQ(ValueBelow(title), 0.5) << title;
   EXPECT_TRUE(HasRemark(ReadText(Below("# BRDF and BRF of the sample")), "more than one kind of value"));
 }
