@@ -20,9 +20,14 @@ void Become(C coordinate, CsvColumn* column) {
   column->coordinate = coordinate;
 }
 
+// Only names that begin like the first word and are hardly longer are taken apart: a table may have 65 536 columns.
 CsvColumn* Find(std::vector<CsvColumn>* columns, const NameList& words) {
-  const auto found =
-      std::find_if(columns->begin(), columns->end(), [&](const CsvColumn& column) { return WordsOf(column) == words; });
+  constexpr std::size_t kUnit = 12;
+  const std::size_t longest = Joined(words).size() + kUnit;
+  const auto found = std::find_if(columns->begin(), columns->end(), [&](const CsvColumn& column) {
+    return !column.name.empty() && column.name.size() <= longest && (column.name[0] | 0x20) == words[0][0] &&
+           WordsOf(column) == words;
+  });
   return found == columns->end() ? nullptr : &*found;
 }
 
