@@ -360,8 +360,28 @@ TEST(CsvLayouts, ReflectancesAtWavelengths) {
   EXPECT_FALSE(HasRemark(ReadText("theta_i,theta_o,450nm,550nm\n30,40,1,2\n"), "pi-f"));
 }
 
+// As automotive instruments write them: a row a wavelength, a column a geometry.
+TEST(CsvLayouts, ColumnsOfAspecularAngles) {
+  const std::string table = "Wavelength,r45as-15,r45as15,45as110\n550,40,60,2\n560,41,61,3\n";
+  EXPECT_NE(MessageOf(table).find("--value-kind pi-f, and --value-scale %"), std::string::npos);
+  for (const std::string& title : {std::string("Reflectance factor (%)\n"), std::string()}) {
+    ReadOptions options;
+    if (title.empty()) {
+      options.value_kind = ValueKind::kReflectanceFactor;
+      options.value_scale = "%";
+    }
+    const Measurement m = ReadText(title + table, options);
+    ASSERT_EQ(m.samples.size(), 3U);
+    ASSERT_EQ(m.channels.wavelengths_nm, (std::vector<double>{550, 560}));
+    ExpectSample(m, 0, 45, 0, 60, 180, 0.4 / kPi);
+    ExpectSample(m, 1, 45, 0, 30, 180, 0.6 / kPi);
+    ExpectSample(m, 2, 45, 0, 65, 0, 0.02 / kPi);
+  }
+  EXPECT_NE(MessageOf("Reflectance factor (%)\ntheta_o,45as15,AOI=10\n10,1,2\n"), "(was read)");
+}
+
 TEST(CsvLayouts, GeometriesInOneWord) {
-  EXPECT_NE(MessageOf("Wavelength,r45as-15,r45as15\n550,1,2\n560,1,2\n").find("AOI 45, aspecular 15"),
+  EXPECT_NE(MessageOf("Geometry,550nm,560nm\n45as15,1,2\n45as25,2,3\n").find("AOI 45, aspecular 15"),
             std::string::npos);
   EXPECT_NE(MessageOf("Geometry,400nm,500nm\n45:0,1,2\n45:30,1,2\n").find("theta_i 45, theta_o 0"), std::string::npos);
   EXPECT_NE(MessageOf("Geometry,BRDF\n45/0,1\n45/30,2\n").find("theta_i 45, theta_o 0"), std::string::npos);

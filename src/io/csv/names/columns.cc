@@ -167,6 +167,23 @@ bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {
   return true;
 }
 
+// "45as15", "r45as-15": light at 45 degrees, seen 15 degrees from its mirror direction towards it.
+bool ClassifyGeometry(std::string_view name, CsvColumn* column) {
+  name = Trim(name);
+  if (name.starts_with('r') || name.starts_with('R')) name.remove_prefix(1);
+  const std::size_t at = name.find("as");
+  if (name.empty() || at == 0 || at > 3 || name.size() > 8 || at == std::string_view::npos) return false;
+  const std::optional<double> incidence = ParseDouble(name.substr(0, at)), offset = ParseDouble(name.substr(at + 2));
+  if (!incidence || !offset || !(*incidence >= 0 && *incidence < 90) || !(std::fabs(*offset) < 180)) return false;
+  column->role = ColumnRole::kFixed;
+  column->coordinate = Coordinate::kFromSpecular;
+  column->fixed = *offset;
+  column->fixed_incidence = incidence;
+  column->angle_unit = AngleUnit::kDegrees;
+  column->reversed = true;
+  return true;
+}
+
 // "cos_sza"
 bool IsCosineOfSynonym(std::string_view joined, CsvColumn* column) {
   if (!joined.starts_with("cos_")) return false;
@@ -355,6 +372,7 @@ CsvColumn ClassifyName(std::string_view name, Fixed fixed) {
   }
   CsvColumn column;
   column.name = std::string(Trim(name));
+  if (ClassifyGeometry(name, &column)) return column;
   NameWords split = SplitName(name);
   if (split.words.size() > 12) return column;
   column.unit = split.unit;

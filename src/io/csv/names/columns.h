@@ -66,6 +66,7 @@ struct CsvColumn {
   ColumnRole role = ColumnRole::kUnknown;
   Coordinate coordinate = Coordinate::kThetaI;  // kCoordinate and kFixed
   double fixed = 0;                             // kFixed, kNumber: the number of the name
+  std::optional<double> fixed_incidence;        // kFixed of "45as15": 45, in degrees, beside the aspecular angle
   std::string unit;                             // as written in the name or in a row of units
   bool foreign = false;                         // the name is of another language than English
   std::optional<AngleUnit> angle_unit;          // stated by the name

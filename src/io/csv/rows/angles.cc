@@ -336,6 +336,14 @@ class AngleFinder {
         Fail("the columns " + QuotedName(*first) + " and " + QuotedName(column) +
              " have different units; use one unit");
       directions.Give(column.coordinate, Scale(column), column.form);
+      if (column.fixed_incidence) {
+        directions.Give(C::kThetaI, RadiansPerUnit(AngleUnit::kDegrees));
+        directions.SetOffset(column.reversed, false);
+      }
+      if (column.fixed_incidence.has_value() != first->fixed_incidence.has_value()) {
+        Fail("the columns " + QuotedName(*first) + " and " + QuotedName(column) +
+             " hold values at angles of different kinds; put them into files of their own");
+      }
     }
     if (head_) {
       directions.Give(*head_, Scale(*head_, std::nullopt),

@@ -8,7 +8,7 @@
 
 namespace lobefit {
 
-// What to do about "45as15", "r45as-15", "45:0" or "45/0" among the names or in the first row; empty where there is
+// What to do about "45:0" or "45/0" among the names, those and "45as15" in the first row; empty where there is
 // none.
 std::string DescribeGeometries(const std::vector<CsvColumn>& columns,
                                const std::vector<std::vector<std::string>>& first_rows);

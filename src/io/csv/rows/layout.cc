@@ -206,8 +206,10 @@ class LayoutBuilder {
   // A table with a column for each angle.
   bool ChooseFixedGroups() {
     for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (columns_[i].role == ColumnRole::kFixed)
-        layout_.groups.push_back({{{columns_[i].coordinate, columns_[i].fixed}}, {i}});
+      if (columns_[i].role != ColumnRole::kFixed) continue;
+      layout_.groups.push_back({{{columns_[i].coordinate, columns_[i].fixed}}, {i}});
+      if (columns_[i].fixed_incidence)
+        layout_.groups.back().fixed.emplace_back(Coordinate::kThetaI, *columns_[i].fixed_incidence);
     }
     if (layout_.groups.empty()) return false;
     const auto value = std::find_if(columns_.begin(), columns_.end(),

@@ -112,6 +112,12 @@ void FindValueUnit(const InputFile& file, const CsvHeader& header, const ReadOpt
         "sunlight are (BRF, HDRF), are pi f_r: --value-kind pi-f");
   }
   RemarkOnLight(mention, notes);
+  if (origin == "default" && column.fixed_incidence) {
+    FailAtLine(file, header.names_line,
+               "the column " + QuotedName(column) +
+                   " does not say what its values are; instruments of this geometry give reflectance factors, often in "
+                   "percent: --value-kind pi-f, and --value-scale % where they are");
+  }
   const bool percent = column.value_scale && column.value_scale->factor == 0.01;
   if (origin == "default" && column.role == ColumnRole::kChannel && percent)
     FailAtLine(
