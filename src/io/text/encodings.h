@@ -10,8 +10,8 @@ namespace lobefit {
 // the encoding.
 std::string ConvertLoosely(std::string_view text, const char* encoding);
 
-// "GB18030", "SHIFT_JIS", "BIG5", "EUC-KR", "WINDOWS-1250" or "WINDOWS-1251" where the text has words for angles and light in it, else
-// "WINDOWS-1252", which every text is.
+// "GB18030", "SHIFT_JIS", "BIG5", "EUC-KR", "WINDOWS-1250" or "WINDOWS-1251" where the text has words for angles and
+// light in it, else "WINDOWS-1252", which every text is.
 const char* FindEncoding(std::string_view text);
 
 }  // namespace lobefit

@@ -84,7 +84,7 @@ class HeaderReader {
     return SetNames(at, std::move(columns));
   }
 
-  // "AOI,10,10,30,30" over "angle,BRDF,std,BRDF,std": one table of columns at fixed angles, whose name and numbers stand
+  // "AOI,10,10,30,30" over "angle,BRDF,std,BRDF,std": a table of columns at fixed angles, whose name and numbers stand
   // in the line above. Names them as one line would: "AOI=10", "AOI=10 err".
   void TakeFixedAbove(std::size_t at, std::vector<CsvColumn>* columns) {
     if (at == 0 || lines_[at - 1].comment || columns->size() < 3) return;
