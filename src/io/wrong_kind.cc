@@ -57,6 +57,23 @@ constexpr auto kKinds = std::to_array<Kind>({
      "is a program, not a measurement"},
     {"MZ\x90", "is a program, not a measurement"},
     {"IESNA", "is a photometric file of a luminaire (IES), whose intensities are no f_r"},
+    {"TracePro Surface Property Data",
+     "is a surface property of TracePro; write the rows of its Table_BSDF_Data as CSV with the columns "
+     "theta_i,phi_i,theta_o,phi_o,brdf (its ScatterBeta is |beta - beta0| about the mirror direction)"},
+    {"OPTIS - ",
+     "is a surface file of Speos; convert it to Zemax' or LightTools' .bsdf, or write its tables as CSV with the "
+     "columns "
+     "theta_i,phi_i,theta_o,phi_o,brdf"},
+    {"DataType:\tBRDF(",
+     "is an export of a goniometer (.jdv); export it for Zemax, or write one row a value as CSV with the columns "
+     "theta_i,phi_i,theta_o,phi_o,brdf"},
+    {"Name / Comment :",
+     "is an export of a Reflet goniometer; export it for Zemax, or write one row a value as CSV with the columns "
+     "theta_i,phi_i,theta_o,phi_o,brdf"},
+    {"IGOR\n", "is an Igor Text file; save the waves as delimited text: Data, Save Waves, Save Delimited Text"},
+    {"PE UV ", "is a spectrum of PerkinElmer, which has no directions"},
+    {"CGATS.17", "is a CGATS file of colours, which has no directions of light and viewer"},
+    {"SpectraSuite Data File", "is a spectrum of Ocean Optics, which has no directions"},
     {"##TITLE=", "is a JCAMP-DX spectrum, which has no directions"},
     {"/annex/objects/",
      "is a pointer of git-annex, not the file itself; run 'git annex get' in its repository, or download the file from "
@@ -88,6 +105,8 @@ std::string DescribeMarkup(std::string_view head) {
     return "is a server's message that the file cannot be had, not a measurement; look for another link";
   if (has("<scene ") || has("<materialx"))
     return "is a renderer's material, not a measurement; `lobefit compare FILE --with` sets it beside one";
+  if (has("<cc:cxf") || has("colorexchangeformat"))
+    return "is a CxF file of colours; write one row a value as CSV with the columns theta_i,theta_o,brdf";
   if (has("\"lobefit material\""))
     return "is a material document, not a measurement; `lobefit compare FILE --with` sets it beside one, "
            "`lobefit synth` makes a measurement of it";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "lobefit/measurement/pair_index.h"
@@ -26,6 +27,40 @@ void ForEachArray(Samples& samples, Function&& function) {
 }
 
 bool IsFinite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// Samples of a pair of directions that occurred before, whose values are not those of noise.
+class UnlikeRepeats {
+ public:
+  explicit UnlikeRepeats(const Samples& samples) : samples_(samples) {}
+
+  void Add(std::size_t first, std::size_t again) {
+    // On the normal grids repeat a direction once for each azimuth.
+    if (samples_.wi_z[again] > 1 - 1e-12 || samples_.wo_z[again] > 1 - 1e-12) return;
+    const double a = samples_.values[0][first], b = samples_.values[0][again];
+    if (std::isnan(a) || std::isnan(b)) return;
+    greater_.push_back(std::max(a, b));
+    lesser_.push_back(std::min(a, b));
+  }
+
+  // Empty where most are alike. What is dark may scatter by any factor.
+  std::string Remark() const {
+    if (greater_.empty()) return "";
+    double largest = 0;
+    for (const double value : samples_.values[0]) largest = std::max(largest, value);
+    std::size_t unlike = 0;
+    for (std::size_t k = 0; k < greater_.size(); ++k)
+      unlike += greater_[k] > 0.02 * largest && greater_[k] > 2 * lesser_[k] ? 1 : 0;
+    if (5 * unlike <= greater_.size()) return "";
+    return "directions occur again, and " + std::to_string(unlike) + " of " + std::to_string(greater_.size()) +
+           " repetitions differ from the first by more than a factor of two: is something missing that tells them "
+           "apart "
+           "(an azimuth, a wavelength, the sample)? Only the first of each are kept";
+  }
+
+ private:
+  const Samples& samples_;
+  std::vector<double> greater_, lesser_;
+};
 
 }  // namespace
 
@@ -112,15 +147,26 @@ Measurement MeasurementBuilder::Finish() {
   };
   for (std::size_t i = 0; i < kAhead; ++i) prepare(i);
   std::vector<std::uint8_t> keep(samples.size(), 1);
+  std::vector<std::size_t> firsts;  // of each pair its first sample, as soon as one occurs again
+  UnlikeRepeats unlike(samples);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const std::size_t known = seen.size();
-    if (seen.FindOrAdd(ahead[i % kAhead]) < known) {
+    const std::size_t known = seen.size(), pair = seen.FindOrAdd(ahead[i % kAhead]);
+    if (pair < known) {
       keep[i] = 0;
       Skip(SetAsideReason::kDuplicate);
+      if (firsts.empty()) {
+        firsts.resize(known);
+        std::iota(firsts.begin(), firsts.end(), std::size_t{0});
+      }
+      unlike.Add(firsts[pair], i);
+    } else if (!firsts.empty()) {
+      firsts.push_back(i);
     }
     prepare(i + kAhead);
   }
+  const std::string remark = unlike.Remark();
   if (seen.size() < samples.size()) samples.Keep(keep);
+  if (!remark.empty()) measurement_.remarks.push_back(remark);
   return std::move(measurement_);
 }
 

@@ -109,7 +109,7 @@ class MeasurementBuilder {
   bool Add(const Vec3& wi, const Vec3& wo, const double* values, std::uint32_t origin_index);
   void Skip(SetAsideReason reason, std::size_t count = 1) { measurement_.set_aside.Add(reason, count); }
   Measurement& measurement() { return measurement_; }
-  // Sets aside repeated pairs of directions (equal to 1e-9 rad; the first one stays), then hands the measurement over.
+  // Sets aside repeated pairs of directions (equal to 1e-9 rad; the first stays, unlike ones are said), hands all over.
   Measurement Finish();
 
  private:

@@ -1,5 +1,6 @@
 #include "lobefit/io/csv/amid_rows.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "lobefit/base/text/csv_fields.h"
@@ -8,6 +9,13 @@
 #include "lobefit/io/text/place.h"
 
 namespace lobefit {
+namespace {
+
+constexpr std::size_t kMostProse = 64;
+
+std::string_view BeforeDigits(std::string_view text) { return text.substr(0, text.find_first_of("0123456789")); }
+
+}  // namespace
 
 void AmidRows::TakeWords(std::string_view line, std::size_t number, const RowParser& parser) {
   // Of a file that was put behind another.
@@ -16,6 +24,7 @@ void AmidRows::TakeWords(std::string_view line, std::size_t number, const RowPar
   SplitCsvLine(line, header_.separator, &fields);
   if (Trim(line) == Trim(header_.names) || AreNamesAgain(fields) || AreUnitsAgain(fields)) {
     // What stands above names is the head of a page.
+    if (page_.empty() && !message_.empty()) page_ = "'" + text_ + "' in line " + std::to_string(line_);
     message_.clear();
     words_ = 0;
     return;
@@ -76,10 +85,13 @@ bool AmidRows::ReadKeyAmidRows(std::size_t number, std::string_view comment,
                                const std::vector<std::string_view>& fields) {
   if (!comment.empty() && comment.find_first_of(":=") == std::string_view::npos) {
     RequireKeptUnits(number, FindColumnUnits(comment));
-    return false;
+    if (!MayStateAnAngle(comment)) return false;
   }
   CsvKeys keys = header_.keys;
-  if (!(fields.empty() ? ReadKey(file_, number, comment, &keys) : ReadKey(file_, number, fields, &keys))) return false;
+  if (!(fields.empty() ? ReadKey(file_, number, comment, &keys) : ReadKey(file_, number, fields, &keys))) {
+    if (!comment.empty() && prose_.size() < kMostProse) prose_.emplace(BeforeDigits(comment));
+    return false;
+  }
   RequireSameUnits(file_, number, header_.keys, keys);
   RequireKeptUnits(number, {keys.column_units.begin() + static_cast<std::ptrdiff_t>(header_.keys.column_units.size()),
                             keys.column_units.end()});
@@ -100,6 +112,17 @@ bool AmidRows::ReadKeyAmidRows(std::size_t number, std::string_view comment,
   }
   header_.keys = std::move(keys);
   return true;
+}
+
+// "# theta_i 30" before the next part, as the head states it of the first. Comments of a hundred thousand rows begin
+// alike: what was prose before is not looked at again, nor are rows that were commented out.
+bool AmidRows::MayStateAnAngle(std::string_view comment) const {
+  constexpr std::size_t kLongest = 60;
+  const bool stated = !header_.keys.fixed.empty() || header_.keys.wavelength_nm;
+  if (!stated || comment.size() > kLongest || comment.find_first_of("0123456789") == std::string_view::npos ||
+      std::none_of(comment.begin(), comment.end(), [](char c) { return (c | 0x20) >= 'a' && (c | 0x20) <= 'z'; }))
+    return false;
+  return prose_.find(BeforeDigits(comment)) == prose_.end();
 }
 
 // A file put behind another may have other units.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,8 +31,11 @@ class AmidRows {
   [[noreturn]] void Fail() const;
   // What is said of a footer.
   std::string Remark() const;
+  // The first words that stood above names amid the rows: "'Sample B' in line 40". Empty where there were none.
+  const std::string& page() const { return page_; }
 
  private:
+  bool MayStateAnAngle(std::string_view comment) const;
   bool AreNamesAgain(const std::vector<std::string_view>& fields) const;
   bool AreUnitsAgain(const std::vector<std::string_view>& fields) const;
   // Throws InputError for a unit of a column that is not that of the rows before.
@@ -43,6 +48,8 @@ class AmidRows {
   Coordinates& at_;
   std::size_t words_ = 0, line_ = 0;
   std::string message_, text_;
+  std::string page_;
+  std::set<std::string, std::less<>> prose_;  // beginnings of comments that stated nothing
 };
 
 }  // namespace lobefit

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -128,10 +129,18 @@ class CsvReader {
     }
     if (measurement.set_aside[SetAsideReason::kDuplicate] > 0) {
       const std::string distinctions = DescribeDistinctions(file_, header_, layout_);
-      notes_.remarks.push_back(
-          distinctions.empty()
-              ? "directions occur again; --repeated mean averages their rows instead of keeping the first"
-              : distinctions);
+      if (!distinctions.empty()) {
+        notes_.remarks.push_back(distinctions);
+      } else if (!amid_rows_.page().empty()) {
+        notes_.remarks.push_back("directions occur again below " + amid_rows_.page() +
+                                 ": where that begins another sample, put the parts into files of their own; only the "
+                                 "first row of each pair of directions was kept");
+      } else if (measurement.remarks.empty()) {  // by the builder, of repetitions that are unlike
+        notes_.remarks.emplace_back(
+            "directions occur again; --repeated mean averages their rows instead of keeping the first");
+      } else {
+        std::move(measurement.remarks.begin(), measurement.remarks.end(), std::back_inserter(notes_.remarks));
+      }
     }
     measurement.conventions = notes_.conventions;
     measurement.conventions["repeated"] = Name(repeated_) + (options_.repeated               ? " (option)"

@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include "lobefit/base/error.h"
+#include "lobefit/io/text/encodings.h"
 
 namespace lobefit {
 namespace {
@@ -176,7 +177,15 @@ void DecodedFile::DecodeText() {
     replace(Convert(all.substr(mark ? 2 : 0), encoding, file_.path()));
     remarks_.emplace_back("converted from UTF-16");
   } else if (const std::string_view head = all.substr(0, kHead); !IsUtf8(head) && IsText(head)) {
-    replace(Convert(all, "WINDOWS-1252//IGNORE", file_.path()));
+    // Numbers say nothing of the encoding; words stand at the beginning.
+    constexpr std::size_t kWords = 4096;
+    const std::string found = FindEncoding(all.substr(0, kWords));
+    if (found == "WINDOWS-1252") {
+      replace(Convert(all, "WINDOWS-1252//IGNORE", file_.path()));
+    } else {
+      replace(ConvertLoosely(all, found.c_str()));
+      remarks_.push_back("the text is no UTF-8 and was read as " + found);
+    }
   }
   const std::string_view head = bytes().substr(0, kHead);
   if (head.find('\r') != std::string_view::npos && head.find('\n') == std::string_view::npos && IsText(head)) {

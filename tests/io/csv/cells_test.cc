@@ -28,7 +28,7 @@ TEST(CsvCells, NumberUnitAndUncertainty) {
     EXPECT_EQ(cell->unit, c.unit) << c.text;
   }
   for (const char* text : {"", "deg", "12 furlongs", "12:30", "2024-03-01", "01.03.2024", "31 ± 2 %", "0.3 ± x",
-                           "0.3(x)", "(0.3)", "1 deg ± 0.1 rad", "10°30'"}) {
+                           "0.3(x)", "(0.3)", "1 deg ± 0.1 rad", "10°75'", "10.5°30'"}) {
     EXPECT_FALSE(ParseCell(text, '.')) << text;
   }
   EXPECT_EQ(ParseCell("12,5 deg", ',')->number, 12.5);
@@ -63,7 +63,7 @@ TEST(CsvCells, TwoUnitsAreAsked) {
   for (int i = 0; i < 100; ++i) late += "10,20,0,1\n";
   EXPECT_NE(MessageOf(late + "0.5 rad,20,0,1\n").find("write the unit into the name of the column"), std::string::npos);
   EXPECT_NE(MessageOf(names + "10,20,0,0.3 ± 5 %\n").find("in the unit of the value"), std::string::npos);
-  EXPECT_NE(MessageOf(names + "10°30',20,0,0.3\n").find("write degrees with decimals"), std::string::npos);
+  EXPECT_NE(MessageOf(names + "10°75',20,0,0.3\n").find("write degrees with decimals"), std::string::npos);
   EXPECT_NE(MessageOf("theta_i;theta_o;dphi;brdf\n10;20;0;0,5\n10;30;0;5 530,6\n").find("between thousands"),
             std::string::npos);
 }
@@ -92,6 +92,23 @@ TEST(CsvCells, RowsWithoutBareNumbersAreNoTitles) {
   const Measurement m = ReadText("theta_i,theta_o=-20,theta_o=0,theta_o=20\n10,OVER,-,0.5\n20,0.1,0.2,0.3\n");
   EXPECT_EQ(m.samples.size(), 4U);
   EXPECT_EQ(m.set_aside[SetAsideReason::kHole], 2U);
+}
+
+TEST(CsvCells, DegreesAndMinutes) {
+  for (const auto& [in, out] : {std::pair{"10\u00b030'", "-40\u00b015'"},
+                                {"10d30m", "-40d15m"},
+                                {"10 deg 30 min", "-40 deg 15 min"},
+                                {"10\u00b030\u2032", "\u221240\u00b015\u203200\u2033"}}) {
+    const Measurement m =
+        ReadText(std::string("theta_i,theta_o,brdf\n") + in + "," + out + ",1\n10\u00b000',20\u00b000',2\n");
+    ASSERT_EQ(m.samples.size(), 2U) << in;
+    ExpectSample(m, 0, 10.5, 0, 40.25, 0, 1);
+    ExpectSample(m, 1, 10, 0, 20, 180, 2);
+  }
+  // The minutes of the first row are no unit of the others.
+  const Measurement m = ReadText("theta_i,theta_o,brdf\n10\u00b000',20\u00b000',1\n10\u00b000',20\u00b030',2\n");
+  ExpectSample(m, 1, 10, 0, 20.5, 180, 2);
+  EXPECT_NE(MessageOf("theta_i,theta_o,brdf\n10\u00b075',20\u00b000',1\n"), "(was read)");
 }
 
 }  // namespace

@@ -94,5 +94,82 @@ TEST(CsvConventions, RelatedToAWhiteStandard) {
   EXPECT_NEAR(ReadText("theta_i,theta_r,ARS (1/sr)\n30,60,0.25\n").samples.values[0][0], 0.5, 1e-12);
 }
 
+// 45as15 is 15 degrees from the mirror direction towards the light (ASTM E2194).
+TEST(CsvConventions, AspecularAngles) {
+  const Measurement m = ReadText("AOI,aspecular angle,brdf\n45,15,1\n45,110,1\n");
+  EXPECT_NEAR(ViewerDeg(m), 30, 1e-9);
+  EXPECT_TRUE(HasRemark(m, "towards the light"));
+  EXPECT_NEAR(ViewerDeg(ReadText("Illumination: 45 deg\naspecular,brdf\n-15,1\n")), 60, 1e-9);
+  // Numbers that the convention would put behind the sample.
+  const Measurement away = ReadText("AOI,aspecular angle,brdf\n60,10,1\n60,-140,1\n");
+  EXPECT_NEAR(ViewerDeg(away), 70, 1e-9);
+  EXPECT_TRUE(HasRemark(away, "away from the light"));
+  ReadOptions options;
+  options.columns = "theta_o - theta_i=aspecular";
+  EXPECT_NEAR(ViewerDeg(ReadText("AOI,aspecular,brdf\n45,15,1\n", options)), 60, 1e-9);
+}
+
+TEST(CsvConventions, AnglesFromTheSurface) {
+  const std::string row = "theta_i,theta_o,brdf\n60,50,1\n";
+  const auto light = [](const Measurement& m) { return RadiansToDegrees(std::acos(m.samples.wi_z[0])); };
+  for (const char* line :
+       {"# angles measured from the surface", "# all angles are grazing angles (0 = parallel to the surface)",
+        "# Winkel zur Oberfl\u00e4che gemessen", "# elevation angles"}) {
+    const Measurement m = ReadText(std::string(line) + "\n" + row);
+    EXPECT_NEAR(light(m), 30, 1e-9) << line;
+    EXPECT_NEAR(ViewerDeg(m), 40, 1e-9) << line;
+    EXPECT_TRUE(HasRemark(m, "polar angles count from the surface")) << line;
+  }
+  const Measurement one = ReadText("# incidence angle is measured from the surface\n" + row);
+  EXPECT_NEAR(light(one), 30, 1e-9);
+  EXPECT_NEAR(ViewerDeg(one), 50, 1e-9);
+  for (const char* line : {"# angles measured from the surface normal", "# scattering from the surface of a tile",
+                           "# measured at a grazing angle", "# angles are not measured from the surface"})
+    EXPECT_NEAR(light(ReadText(std::string(line) + "\n" + row)), 60, 1e-9) << line;
+  ReadOptions options;
+  options.columns = "theta_i=theta_i,theta_o=theta_o";
+  EXPECT_NEAR(light(ReadText("# angles measured from the surface\n" + row, options)), 60, 1e-9);
+}
+
+TEST(CsvConventions, ZenithsAndAzimuthsOfOneLetter) {
+  const Measurement m = ReadText("src_z\tsrc_a\tview_z\tview_a\tbrdf\n30\t10\t40\t190\t1\n");
+  ExpectSample(m, 0, 30, 10, 40, 190, 1);
+  // Beside x and y they are components.
+  ExpectSample(ReadText("light_x,light_y,light_z,view_x,view_y,view_z,brdf\n0,0,1,1,0,1,1\n"), 0, 0, 0, 45, 0, 1);
+}
+
+TEST(CsvConventions, PlanetaryLetters) {
+  for (const char* names : {"i,e,g,I/F", "i e alpha RADF", "i;e;psi;IoF"}) {
+    std::string text = std::string(names) + "\n60,60,120,0.5\n";
+    if (std::string(names).find(';') != std::string::npos) text = "i;e;psi;IoF\n60;60;180;0.5\n";
+    if (std::string(names).find(' ') != std::string::npos) text = "i e alpha RADF\n60 60 120 0.5\n";
+    const Measurement m = ReadText(text);
+    EXPECT_NEAR(ViewerDeg(m), 60, 1e-5) << names;
+    EXPECT_NEAR(m.samples.values[0][0], 1 / kPi, 1e-12) << names;
+  }
+  EXPECT_NEAR(ReadText("inc,emi,pha,REFF\n60,60,120,0.5\n").samples.values[0][0], 0.5 / kPi, 1e-12);
+}
+
+TEST(CsvConventions, VectorsAlongThePropagation) {
+  const Measurement m = ReadText("k_in_x,k_in_y,k_in_z,k_out_x,k_out_y,k_out_z,brdf\n0.6,0,-0.8,0,0,1,1\n");
+  EXPECT_NEAR(m.samples.wi_x[0], -0.6, 1e-12);
+  EXPECT_NEAR(m.samples.wi_z[0], 0.8, 1e-12);
+  EXPECT_TRUE(HasRemark(m, "point into the surface"));
+  EXPECT_EQ(ReadText("incident.x,incident.y,incident.z,outgoing.x,outgoing.y,outgoing.z,brdf\n0,0,1,0,0,1,1\n")
+                .samples.size(),
+            1U);
+}
+
+TEST(CsvConventions, CosinesOfShortNames) {
+  const Measurement m = ReadText("cos_sza,cos_vza,raa,brdf\n0.5,1,0,1\n");
+  EXPECT_NEAR(m.samples.wi_z[0], 0.5, 1e-12);
+}
+
+TEST(CsvConventions, RepetitionsThatAreUnlike) {
+  const std::string head = "theta_i,theta_o,brdf\n30,40,1\n";
+  EXPECT_TRUE(HasRemark(ReadText(head + "30,40,9\n"), "1 of 1 repetitions differ from the first"));
+  EXPECT_TRUE(HasRemark(ReadText(head + "30,40,1.1\n"), "--repeated mean averages their rows"));
+}
+
 }  // namespace
 }  // namespace lobefit

@@ -303,5 +303,21 @@ TEST(Units, UncertaintiesInDecibelsAndParts) {
   EXPECT_NEAR(sigma("RSD (%)", "10"), 0.05, 1e-12);
 }
 
+TEST(CsvKeys, LightsByTheirWavelength) {
+  const std::string rows = "theta_i,theta_o,brdf\n30,40,1\n";
+  for (const char* line : {"# 550 nm", "# 550nm", "# Laser: 550 nm", "# Filter 550 nm", "# 0.55 um", "Laser,550,nm"})
+    EXPECT_EQ(ReadText(std::string(line) + "\n" + rows).channels.wavelengths_nm, std::vector<double>{550}) << line;
+  for (const char* line : {"# Filter 10 nm", "# step: 550 nm", "# 550 mm", "# 550", "# roughness: 550 nm"})
+    EXPECT_TRUE(ReadText(std::string(line) + "\n" + rows).channels.wavelengths_nm.empty()) << line;
+  const Measurement m = ReadText("# 450 nm\n" + rows + "# 650 nm\n30,40,2\n");
+  ASSERT_EQ(m.channels.wavelengths_nm, (std::vector<double>{450, 650}));
+  EXPECT_EQ(m.samples.values[1][0], 2);
+}
+
+TEST(CsvKeys, KeysInQuotes) {
+  EXPECT_EQ(ReadText("\"AOI: 30\"\ntheta_o,brdf\n40,1\n").samples.size(), 1U);
+  EXPECT_EQ(ReadText("\"AOI: 30, sample 7\"\ntheta_o,brdf\n40,1\n").samples.size(), 1U);
+}
+
 }  // namespace
 }  // namespace lobefit

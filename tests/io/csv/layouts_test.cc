@@ -317,5 +317,101 @@ TEST(CsvLayouts, WhereAnAzimuthCountsFromInItsName) {
             std::string::npos);
 }
 
+TEST(CsvLayouts, ColumnsOfRepetitions) {
+  const Measurement m = ReadText("theta_i,theta_o,BRDF 1,BRDF 2,BRDF mean,BRDF std\n30,40,1,3,2,0.5\n");
+  EXPECT_EQ(m.samples.values[0][0], 2);
+  EXPECT_EQ(m.samples.sigma.size(), 1U);
+  const std::string message = MessageOf("theta_i,theta_o,BRDF_1,BRDF_2\n30,40,1,3\n");
+  EXPECT_NE(message.find("--value-column \"BRDF_1\""), std::string::npos) << message;
+  EXPECT_NE(message.find("several samples"), std::string::npos) << message;
+  ReadOptions options;
+  options.value_column = "BRDF_2";
+  EXPECT_EQ(ReadText("theta_i,theta_o,BRDF_1,BRDF_2\n30,40,1,3\n", options).samples.values[0][0], 3);
+}
+
+TEST(CsvLayouts, ValuesNamedAmongOtherWords) {
+  EXPECT_NEAR(ReadText("# Relative Azimuth, Viewing Zenith, Incident Zenith, Wavelength, Panel BRF\n"
+                       "52,14,22,800,1.09\n129,50,53,800,1.05\n")
+                  .samples.values[0][0],
+              1.09 / kPi, 1e-12);
+  ReadOptions options;
+  options.value_column = "Panel BRF";
+  EXPECT_NEAR(ReadText("theta_i,theta_o,Panel BRF,Tile BRF\n30,40,1,2\n", options).samples.values[0][0], 1 / kPi,
+              1e-12);
+  for (const char* name : {"BRDF (dBsr)", "BRDF model", "reference BRDF", "BRDF_raw", "BRDF fit"})
+    EXPECT_NE(MessageOf(std::string("theta_i,theta_o,") + name + "\n30,40,1\n"), "(was read)") << name;
+  EXPECT_NE(MessageOf("theta_i,theta_o,Sample A,Sample B\n30,40,1,2\n").find("--value-column \"Sample A\""),
+            std::string::npos);
+}
+
+TEST(CsvLayouts, ReflectancesAtWavelengths) {
+  for (const char* names :
+       {"R450,R550", "refl_450,refl_550", "rho 450nm,rho 550nm", "reflectance_450nm,reflectance_550nm"}) {
+    const std::string text = std::string("theta_i,theta_o,") + names + "\n30,40,1,2\n";
+    EXPECT_NE(MessageOf(text).find("--value-kind pi-f or --value-kind f"), std::string::npos) << names;
+    ReadOptions options;
+    options.value_kind = ValueKind::kReflectanceFactor;
+    const Measurement m = ReadText(text, options);
+    ASSERT_EQ(m.channels.wavelengths_nm, (std::vector<double>{450, 550})) << names;
+    EXPECT_NEAR(m.samples.values[1][0], 2 / kPi, 1e-12) << names;
+    EXPECT_NEAR(ReadText("BRF Values\n" + text).samples.values[1][0], 2 / kPi, 1e-12) << names;
+  }
+  EXPECT_TRUE(HasRemark(ReadText("SZA,VZA,450,550\n30,40,1,2\n"), "are pi f_r: --value-kind pi-f"));
+  EXPECT_FALSE(HasRemark(ReadText("theta_i,theta_o,450nm,550nm\n30,40,1,2\n"), "pi-f"));
+}
+
+// As automotive instruments write them: a row a wavelength, a column a geometry.
+TEST(CsvLayouts, ColumnsOfAspecularAngles) {
+  const std::string table = "Wavelength,r45as-15,r45as15,45as110\n550,40,60,2\n560,41,61,3\n";
+  EXPECT_NE(MessageOf(table).find("--value-kind pi-f, and --value-scale %"), std::string::npos);
+  for (const std::string& title : {std::string("Reflectance factor (%)\n"), std::string()}) {
+    ReadOptions options;
+    if (title.empty()) {
+      options.value_kind = ValueKind::kReflectanceFactor;
+      options.value_scale = "%";
+    }
+    const Measurement m = ReadText(title + table, options);
+    ASSERT_EQ(m.samples.size(), 3U);
+    ASSERT_EQ(m.channels.wavelengths_nm, (std::vector<double>{550, 560}));
+    ExpectSample(m, 0, 45, 0, 60, 180, 0.4 / kPi);
+    ExpectSample(m, 1, 45, 0, 30, 180, 0.6 / kPi);
+    ExpectSample(m, 2, 45, 0, 65, 0, 0.02 / kPi);
+  }
+  EXPECT_NE(MessageOf("Reflectance factor (%)\ntheta_o,45as15,AOI=10\n10,1,2\n"), "(was read)");
+}
+
+TEST(CsvLayouts, GeometriesInOneWord) {
+  EXPECT_NE(MessageOf("Geometry,550nm,560nm\n45as15,1,2\n45as25,2,3\n").find("AOI 45, aspecular 15"),
+            std::string::npos);
+  EXPECT_NE(MessageOf("Geometry,400nm,500nm\n45:0,1,2\n45:30,1,2\n").find("theta_i 45, theta_o 0"), std::string::npos);
+  EXPECT_NE(MessageOf("Geometry,BRDF\n45/0,1\n45/30,2\n").find("theta_i 45, theta_o 0"), std::string::npos);
+}
+
+TEST(CsvLayouts, FixedAnglesInTheLineAbove) {
+  const Measurement m = ReadText("AOI,10,10,30,30\nangle,BRDF,std,BRDF,std\n20,2,0.1,3,0.3\n40,4,0.4,5,0.5\n");
+  ASSERT_EQ(m.samples.size(), 4U);
+  ExpectSample(m, 1, 30, 0, 20, 180, 3);
+  EXPECT_EQ(m.samples.sigma.size(), 4U);
+  // Cells that were merged, decimal commas, another kind.
+  const Measurement merged = ReadText("AOI;10;;30;\nangle;BRF;std;BRF;std\n20;2,5;0,1;3;0,3\n");
+  ExpectSample(merged, 0, 10, 0, 20, 180, 2.5 / kPi);
+  ExpectSample(ReadText("theta_o,i=10,i=30\n20,2,3\n"), 1, 30, 0, 20, 180, 3);
+}
+
+// gnuplot's blocks, whose comments state the angle without a colon.
+TEST(CsvLayouts, AnglesInCommentsAmidRows) {
+  const Measurement m =
+      ReadText("# theta_o brdf\n# theta_i 10\n20 2\n30 3\n\n\n# theta_i 30\n20 4\n30 5\n# done in 30 minutes\n");
+  ASSERT_EQ(m.samples.size(), 4U);
+  ExpectSample(m, 2, 30, 0, 20, 180, 4);
+}
+
+TEST(CsvLayouts, PartsOfOtherSamples) {
+  const std::string names = "theta_i,theta_o,brdf\n";
+  const Measurement m =
+      ReadText("Sample A\n" + names + "30,40,1\n30,50,1\n\nSample B\n" + names + "30,40,1.2\n30,50,1.2\n");
+  EXPECT_TRUE(HasRemark(m, "below 'Sample B' in line 6"));
+}
+
 }  // namespace
 }  // namespace lobefit

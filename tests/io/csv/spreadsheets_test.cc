@@ -124,7 +124,7 @@ TEST(Spreadsheets, NumbersAsFortranAndPeopleWriteThem) {
   ExpectSample(m, 0, 10, 0, 20, 0, 0.05);
   ExpectSample(m, 1, 10, 0, 25, 0, 5);
   ExpectSample(ReadText("theta_i,theta_o,dphi,brdf\n10,20,0,5%\n10,25,0,6%\n"), 0, 10, 0, 20, 0, 0.05);
-  EXPECT_NE(MessageOf("theta_i,theta_o,brdf\n10°30',20°00',5\n").find("'10°30'', which is not a number"),
+  EXPECT_NE(MessageOf("theta_i,theta_o,brdf\n10°75',20°00',5\n").find("'10°75'', which is not a number"),
             std::string::npos);
 }
 
@@ -311,6 +311,30 @@ TEST(Spreadsheets, NumbersWrittenForPeople) {
     const Measurement m = ReadText("theta_i,theta_o,brdf\n10,20,0.5\n" + std::string(row) + "\n");
     ASSERT_EQ(m.samples.size(), 2U) << row;
     ExpectSample(m, 1, 30, 0, 40, 180, 0.25);
+  }
+}
+
+// "1,234" is one thousand to some and a little more than one to others.
+TEST(CsvSpreadsheets, CommasBetweenThousands) {
+  EXPECT_NE(MessageOf("theta_i,theta_o,brdf\n10,20,\"1,234\"\n10,30,999\n").find("one between thousands"),
+            std::string::npos);
+  EXPECT_NEAR(ReadText("theta_i,theta_o,brdf\n10,20,\"1,234\"\n10,30,\"0,999\"\n").samples.values[0][0], 1.234, 1e-12);
+  EXPECT_NEAR(ReadText("theta_i;theta_o;brdf\n10;20;1,234\n10;30;2,345\n").samples.values[0][0], 1.234, 1e-12);
+}
+
+TEST(CsvSpreadsheets, EncodingsOfOtherScripts) {
+  const std::string rows = ",brdf\n30,40,1\n";
+  // "incident angle, reflected angle" in GB18030, Shift-JIS, EUC-KR, Windows-1251 and Windows-1250.
+  for (const auto& [name, head] : {std::pair{"GB18030", "\xc8\xeb\xc9\xe4\xbd\xc7,\xb7\xb4\xc9\xe4\xbd\xc7"},
+                                   {"SHIFT_JIS", "\x93\xfc\x8e\xcb\x8a\x70,\x94\xbd\x8e\xcb\x8a\x70"},
+                                   {"EUC-KR", "\xc0\xd4\xbb\xe7\xb0\xa2,\xb9\xdd\xbb\xe7\xb0\xa2"},
+                                   {"WINDOWS-1250", "k\xb9t padania,k\xb9t odbicia"},
+                                   {"WINDOWS-1251",
+                                    "\xf3\xe3\xee\xeb \xef\xe0\xe4\xe5\xed\xe8\xff,"
+                                    "\xf3\xe3\xee\xeb \xee\xf2\xf0\xe0\xe6\xe5\xed\xe8\xff"}}) {
+    const Measurement m = ReadText(head + rows);
+    ExpectSample(m, 0, 30, 0, 40, 180, 1);
+    EXPECT_TRUE(HasRemark(m, name)) << name;
   }
 }
 

@@ -79,6 +79,40 @@ std::optional<Cell> ParseConcise(std::string_view number, std::string_view rest,
   return Cell{*value * power, OfLastDigits(number, decimal_mark, *last) * power, *unit};
 }
 
+// Takes one of the marks off the beginning.
+template <std::size_t N>
+bool TakeMark(const std::array<std::string_view, N>& marks, std::string_view* text) {
+  for (const std::string_view mark : marks) {
+    if (!text->starts_with(mark)) continue;
+    *text = Trim(text->substr(mark.size()));
+    return true;
+  }
+  return false;
+}
+
+// "10\u00b030'", "10d30m", "-10 deg 30' 15\"" from the degrees on.
+std::optional<Cell> ParseMinutes(std::string_view number, std::string_view rest) {
+  static constexpr std::array<std::string_view, 4> kDegrees = {"\xc2\xb0", "\xc2\xba", "deg", "d"};
+  static constexpr std::array<std::string_view, 5> kMinutes = {"'", "\xe2\x80\xb2", "\xe2\x80\x99", "min", "m"};
+  static constexpr std::array<std::string_view, 5> kSeconds = {"\"", "''", "\xe2\x80\xb3", "sec", "s"};
+  const std::optional<double> degrees = ParseCsvNumber(number, '.');
+  rest = Trim(rest);
+  if (!degrees || *degrees != std::trunc(*degrees) || !TakeMark(kDegrees, &rest)) return std::nullopt;
+  double parts = 0, unit = 1;
+  for (const auto& marks : {kMinutes, kSeconds}) {
+    const std::size_t length = LengthOfNumber(rest);
+    if (length == 0) break;
+    const std::optional<double> part = ParseDouble(rest.substr(0, length));
+    rest = Trim(rest.substr(length));
+    if (!part || !(*part >= 0 && *part < 60) || !TakeMark(marks, &rest)) return std::nullopt;
+    unit /= 60;
+    parts += *part * unit;
+  }
+  if (!rest.empty() || unit == 1) return std::nullopt;
+  const bool negative = number.starts_with('-') || number.starts_with("\xe2\x88\x92");
+  return Cell{*degrees + (negative ? -parts : parts), std::nullopt, "deg"};
+}
+
 }  // namespace
 
 std::string_view NumberOfCell(std::string_view field) {
@@ -126,6 +160,7 @@ std::optional<Cell> ParseCell(std::string_view field, char decimal_mark) {
     return Cell{*value, *spread, !both->empty() ? *both : last->empty() ? *own : *last};
   }
   if (bracketed) return std::nullopt;
+  if (const std::optional<Cell> angle = ParseMinutes(number, rest)) return angle;
   const std::optional<double> value = ParseCsvNumber(number, decimal_mark);
   const std::optional<std::string> unit = UnitOf(rest);
   if (!value || !unit) return std::nullopt;
@@ -155,7 +190,9 @@ std::vector<CellForm> TakeCells(const InputFile& file, std::size_t line,
                        cell->unit + "'; give all in one unit");
       }
       const std::string_view text = Trim(row[i]), number = NumberOfCell(text);
-      if (forms[i].unit.empty() && !cell->uncertainty && text.starts_with(number))
+      // Minutes are no unit that other cells end with.
+      const bool whole = ParseCsvNumber(number, decimal_mark) == cell->number;
+      if (forms[i].unit.empty() && !cell->uncertainty && text.starts_with(number) && whole)
         forms[i].suffix = std::string(text.substr(number.size()));
       forms[i].unit = cell->unit;
     }

@@ -148,6 +148,43 @@ bool ReadViewerZero(std::size_t line, const std::vector<std::string>& words, Csv
   return false;
 }
 
+// "All angles are measured from the surface", "grazing angles", "Winkel zur Oberflaeche": of the light's, of the
+// viewer's, or of both where none is named.
+bool ReadSurface(std::size_t line, const std::vector<std::string>& words, CsvKeys* keys) {
+  static constexpr std::array<std::string_view, 7> kSurface = {
+      "surface", "horizon", "oberfl\u00e4che", "oberflaeche", "surfaces", "superficie", "ebene"};
+  static constexpr std::array<std::string_view, 5> kRelation = {"to", "respect", "relative", "zur", "gegen"};
+  static constexpr std::array<std::string_view, 4> kAngles = {"angle", "winkel", "angulo", "angolo"};
+  static constexpr std::array<std::string_view, 4> kLights = {"inciden", "einfall", "illumin", "light"};
+  const auto any = [&](const auto& parts) {
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return HoldsAny(word, parts); });
+  };
+  if (!any(kAngles)) return false;
+  bool found = false;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "not" || HoldsAny(words[i], std::array<std::string_view, 3>{"normal", "senkrecht", "lot"}))
+      return false;
+    const bool graze = (words[i] == "grazing" || words[i] == "elevation") && i + 1 < words.size() &&
+                       HoldsAny(words[i + 1], kAngles) &&
+                       std::none_of(words.begin(), words.end(), [](const std::string& word) { return word == "at"; });
+    bool related = false;
+    for (std::size_t k = i - std::min<std::size_t>(i, 3); k < i; ++k)
+      related = related || IsFrom(words[k]) || HoldsAny(words[k], std::array<std::string_view, 1>{"zwischen"}) ||
+                std::find(kRelation.begin(), kRelation.end(), words[k]) != kRelation.end();
+    const bool surface = std::find(kSurface.begin(), kSurface.end(), words[i]) != kSurface.end();
+    found = found || graze || (surface && related);
+  }
+  if (!found) return false;
+  const bool light = any(kLights), viewer = any(kViewer);
+  keys->light_from_surface = keys->light_from_surface || light || !viewer;
+  keys->viewer_from_surface = keys->viewer_from_surface || viewer || !light;
+  keys->remarks.push_back(
+      "line " + std::to_string(line) +
+      ": polar angles count from the surface, as the line says; --columns theta_i=NAME,theta_o=NAME "
+      "reads them from the normal");
+  return true;
+}
+
 }  // namespace
 
 bool ReadConvention(std::size_t line, std::string_view text, CsvKeys* keys) {
@@ -161,7 +198,7 @@ bool ReadConvention(std::size_t line, std::string_view text, CsvKeys* keys) {
     if (std::any_of(clause.begin(), clause.end(), is_azimuth)) return ReadAzimuthZero(line, clauses, keys);
   }
   for (const std::vector<std::string>& clause : clauses) {
-    if (ReadViewerZero(line, clause, keys)) return true;
+    if (ReadViewerZero(line, clause, keys) || ReadSurface(line, clause, keys)) return true;
   }
   return false;
 }

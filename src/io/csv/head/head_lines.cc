@@ -20,7 +20,7 @@ bool NamesAnything(std::string_view field) {
   std::string storage;
   const CsvColumn column = ClassifyColumn(Unquoted(field, &storage));
   return column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kValue ||
-         column.role == ColumnRole::kWavelength || column.role == ColumnRole::kFixed;
+         column.role == ColumnRole::kWavelength || (column.role == ColumnRole::kFixed && !column.fixed_incidence);
 }
 
 // Names of several words: what runs of blanks or tabs divide, or else words with their units in brackets.
@@ -98,6 +98,10 @@ std::vector<CsvColumn> Classify(const CsvFields& names) {
 }
 
 bool NamesADirection(const std::vector<CsvColumn>& columns) {
+  // "45as15" alone begins a row.
+  const auto geometries = std::count_if(columns.begin(), columns.end(),
+                                        [](const CsvColumn& column) { return column.fixed_incidence.has_value(); });
+  if (geometries == 1) return false;
   return columns.size() > 1 && std::any_of(columns.begin(), columns.end(), [](const CsvColumn& column) {
            return column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed;
          });

@@ -21,6 +21,14 @@ using Fields = CsvFields;
 constexpr std::size_t kMostColumns = 65536;
 constexpr std::size_t kHeadLines = 400;
 
+// "1,234", but neither "0,234" nor "1,23".
+bool MayBeThousands(std::string_view field) {
+  while (!field.empty() && (field.front() == '+' || field.front() == '-')) field.remove_prefix(1);
+  const std::size_t comma = field.find(',');
+  return comma != std::string_view::npos && comma > 0 && comma < 4 && field.front() != '0' &&
+         field.size() == comma + 4 && field.find_first_not_of("0123456789,") == std::string_view::npos;
+}
+
 class HeadTextReader {
  public:
   explicit HeadTextReader(const InputFile& file) : file_(file) {}
@@ -136,8 +144,9 @@ class HeadTextReader {
   }
 
   void FindDecimalMark() {
-    std::size_t commas = 0, points = 0;
-    std::string storage;
+    std::size_t commas = 0, points = 0, groups = 0;
+    std::string storage, group;
+    std::size_t line_of_group = 0;
     for (std::size_t i = text_.first_row; i < text_.lines.size(); ++i) {
       if (text_.lines[i].comment) continue;
       for (const std::string_view raw : SplitFields(text_.lines[i].text, text_.separator)) {
@@ -150,6 +159,9 @@ class HeadTextReader {
         }
         if (HasDecimalComma(field)) {
           ++commas;
+          if (MayBeThousands(field)) {
+            if (groups++ == 0) group = std::string(field), line_of_group = text_.lines[i].number;
+          }
         } else if (field.find('.') != std::string_view::npos && ParseDouble(field)) {
           ++points;
         }
@@ -159,6 +171,13 @@ class HeadTextReader {
       FailAtLine(file_, text_.lines[text_.first_row].number,
                  "some numbers have a decimal comma and some a decimal point, or commas separate thousands; write all "
                  "with points");
+    }
+    if (groups > 0 && groups == commas && text_.separator == ',') {
+      FailAtLine(
+          file_, line_of_group,
+          "'" + Excerpt(group) +
+              "' can have a decimal comma or one between thousands, and no other number tells; write numbers with "
+              "points and without separators between thousands");
     }
     if (commas > 0) text_.decimal_mark = ',';
   }

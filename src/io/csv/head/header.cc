@@ -84,6 +84,33 @@ class HeaderReader {
     return SetNames(at, std::move(columns));
   }
 
+  // "AOI,10,10,30,30" over "angle,BRDF,std,BRDF,std": a table of columns at fixed angles, whose name and numbers stand
+  // in the line above. Names them as one line would: "AOI=10", "AOI=10 err".
+  void TakeFixedAbove(std::size_t at, std::vector<CsvColumn>* columns) {
+    if (at == 0 || lines_[at - 1].comment || columns->size() < 3) return;
+    const Fields above = SplitFields(lines_[at - 1].text, header_.separator);
+    if (above.size() != columns->size()) return;
+    std::string storage;
+    const std::string head(Unquoted(above[0], &storage));
+    const CsvColumn coordinate = ClassifyColumn(head);
+    if (coordinate.role != ColumnRole::kCoordinate || (*columns)[0].role != ColumnRole::kCoordinate) return;
+    std::string number;
+    std::vector<CsvColumn> named = {(*columns)[0]};
+    std::size_t values = 0;
+    for (std::size_t i = 1; i < above.size(); ++i) {
+      const CsvColumn& own = (*columns)[i];
+      if (!Trim(above[i]).empty()) number = std::string(NumberOfCell(Unquoted(above[i], &storage)));
+      const bool spread = own.role == ColumnRole::kSigma;
+      if (!ParseCsvNumber(number, header_.decimal_mark) || (own.role != ColumnRole::kValue && !spread)) return;
+      std::replace(number.begin(), number.end(), ',', '.');
+      named.push_back(ClassifyColumn(head + "=" + number + (spread ? " err" : "")));
+      named.back().value_kind = own.value_kind;
+      named.back().value_scale = own.value_scale;
+      values += spread ? 0 : 1;
+    }
+    if (values > 1) *columns = std::move(named);
+  }
+
   bool TryNames(std::size_t at) {
     const std::string_view text = lines_[at].comment ? CommentText(lines_[at].text) : lines_[at].text;
     const Fields fields = SplitNames(text, header_.separator, row_fields_);
@@ -97,6 +124,7 @@ class HeaderReader {
       header_.head_coordinate = head;
       return SetNames(at, std::move(columns));
     }
+    TakeFixedAbove(at, &columns);
     // Angles under merged headings: "Illumination;;Viewing" over "theta;phi;theta;phi".
     std::size_t lone = 0;
     for (const CsvColumn& column : columns) {
@@ -277,6 +305,7 @@ class HeaderReader {
     for (std::size_t i = 0; i < data_; ++i) {
       if (!lines_[i].comment) continue;
       const std::string_view text = WithoutEmptyCells(CommentText(lines_[i].text), header_.separator);
+      AddTitle(PlainComment(text));
       if (!ReadKey(file_, lines_[i].number, text, &header_.keys) && !IsKeyInCells(lines_[i].number, text) &&
           !text.empty())
         header_.comments.emplace_back(PlainComment(text));
@@ -303,7 +332,8 @@ class HeaderReader {
     for (std::size_t i = 0; i < data_; ++i) {
       if (i == names_ || lines_[i].comment) continue;
       const Fields fields = SplitFields(lines_[i].text, header_.separator);
-      if (ReadKey(file_, lines_[i].number, fields, &header_.keys) || i > names_) continue;
+      const bool key = ReadKey(file_, lines_[i].number, fields, &header_.keys);
+      if (i > names_) continue;
       std::vector<std::string> filled;
       std::string storage;
       for (const std::string_view field : fields) {
@@ -311,8 +341,15 @@ class HeaderReader {
       }
       // More are a heading of columns.
       if (header_.separator == kBlankSeparator) filled = {std::string(Trim(lines_[i].text))};
-      if (filled.size() <= 2) header_.comments.push_back(Join(filled, " "));
+      if (filled.size() > 2) continue;
+      AddTitle(Join(filled, " "));
+      if (!key) header_.comments.push_back(Join(filled, " "));
     }
+  }
+
+  void AddTitle(std::string_view text) {
+    constexpr std::size_t kMostTitles = 200;
+    if (header_.titles.size() < kMostTitles && !text.empty()) header_.titles.emplace_back(text);
   }
 
   void TakeUnits() {

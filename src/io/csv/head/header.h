@@ -31,6 +31,7 @@ struct CsvHeader {
   std::optional<Coordinate> head_coordinate;
   std::vector<std::string> remarks;
   std::vector<std::string> comments;  // and titles, which are no keys
+  std::vector<std::string> titles;    // the first lines above the names and the first comments, keys too
   // The first rows as fields, for what only the numbers can tell.
   std::vector<std::vector<std::string>> first_rows;
 };

@@ -319,7 +319,7 @@ bool ReadKey(const InputFile& file, std::size_t line, std::string_view text, Csv
 bool ReadKey(const InputFile& file, std::size_t line, const std::vector<std::string_view>& fields, CsvKeys* keys) {
   std::vector<std::string_view> filled;
   for (const std::string_view field : fields) {
-    if (!Trim(field).empty()) filled.push_back(Trim(field));
+    if (!Trim(field).empty()) filled.push_back(WithoutQuotes(Trim(field)));
   }
   if (filled.empty() || filled.size() > 3) return false;
   // "Incident,,Reflected" are headings of columns.

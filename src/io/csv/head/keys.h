@@ -35,6 +35,7 @@ struct CsvKeys {
   std::optional<double> wavelength_nm;
   StatedInstrument instrument;
   ViewerZero viewer_zero = ViewerZero::kNotSaid;
+  bool light_from_surface = false, viewer_from_surface = false;  // polar angles, where a sentence says so
   std::vector<FixedCoordinate> fixed;  // each coordinate at most once
   std::string mention_of_incidence;    // the line that theta_i is from, where it is no key (ReadMention)
   std::string lone_azimuth;            // "Azimuth: 90", whose it is not said

@@ -90,10 +90,30 @@ std::optional<Quantity> ParseQuantity(std::string_view text) {
   return std::nullopt;
 }
 
+// "# 633 nm", "Laser: 633 nm", "Filter 550 nm": a light by its wavelength. Widths of filters are smaller.
+bool ReadLight(std::string_view key, const Quantity& quantity, CsvKeys* keys) {
+  static constexpr std::array<std::string_view, 8> kLights = {"",      "laser", "filter", "led",
+                                                              "diode", "band",  "line",   "interference filter"};
+  const std::optional<WavelengthUnit> unit = quantity.unit.empty() || quantity.unit == "m" || quantity.unit == "a"
+                                                 ? std::nullopt
+                                                 : ParseWavelengthUnit(quantity.unit);
+  if (!unit || unit->reciprocal || !HoldsWord(kLights, ToLower(key))) return false;
+  const double nm = unit->ToNm(quantity.number);
+  if (!(nm >= 200 && nm <= 20000)) return false;
+  keys->wavelength_nm = std::round(nm * 1e6) / 1e6;
+  return true;
+}
+
 bool ReadCoordinate(std::string_view key, std::string_view word, CsvKeys* keys) {
-  const CsvColumn column = ClassifyColumn(key);
+  CsvColumn column = ClassifyColumn(key);
   const std::optional<Quantity> quantity = ParseQuantity(word);
   if (!quantity) return false;
+  if (column.role == ColumnRole::kUnknown && ReadLight(key, *quantity, keys)) return true;
+  // "Illumination: 45 deg"
+  if (column.role == ColumnRole::kUnknown && !quantity->unit.empty() && ParseAngleUnit(quantity->unit)) {
+    CsvColumn angle = ClassifyColumn(std::string(key) + " (" + quantity->unit + ")");
+    if (angle.role == ColumnRole::kCoordinate && angle.coordinate == Coordinate::kThetaI) column = std::move(angle);
+  }
   if (column.role == ColumnRole::kWavelength) {
     const std::string& unit = quantity->unit.empty() ? column.unit : quantity->unit;
     const std::optional<WavelengthUnit> known =
@@ -137,6 +157,10 @@ bool ReadCoordinates(std::string_view text, CsvKeys* keys) {
 bool ReadPhrase(std::string_view text, CsvKeys* keys) {
   constexpr std::size_t kMostWords = 6;  // more are a description
   const std::vector<std::string_view> words = SplitBlanks(text);
+  if (!words.empty() && words.size() <= 2) {
+    const std::optional<Quantity> whole = ParseQuantity(text);
+    if (whole && ReadLight("", *whole, keys)) return true;
+  }
   if (words.size() < 2 || words.size() > kMostWords) return false;
   for (std::size_t i = 1; i < words.size(); ++i) {
     if (!ParseQuantity(words[i]) || !(words[i].front() >= '-' && words[i].front() <= '9')) continue;

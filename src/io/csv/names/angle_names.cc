@@ -10,8 +10,8 @@
 namespace lobefit {
 namespace {
 
-constexpr std::array<std::string_view, 9> kPolar = {"theta",       "th",         "polar", "zenith",  "zen",
-                                                    "inclination", "colatitude", "tht",   "vartheta"};
+constexpr std::array<std::string_view, 10> kPolar = {"theta",       "th",         "polar", "zenith",   "zen",
+                                                     "inclination", "colatitude", "tht",   "vartheta", "teta"};
 constexpr std::array<std::string_view, 5> kElevation = {"elevation", "elev", "el", "altitude", "grazing"};
 constexpr std::array<std::string_view, 11> kAzimuthal = {"phi", "ph",     "azimuth",  "azimuthal", "azim",  "az",
                                                          "azi", "azimut", "azimutal", "varphi",    "acimut"};
@@ -56,10 +56,13 @@ bool ClassifyComponent(const NameList& words, CsvColumn* column) {
   const char axis = joined.back();
   if (axis < 'x' || axis > 'z') return false;
   joined.pop_back();
-  static constexpr std::array<std::string_view, 12> kIn = {"wi", "i",  "in", "l",  "light",   "omegai",
-                                                           "di", "wl", "vi", "li", "omegain", "win"};
-  static constexpr std::array<std::string_view, 14> kOut = {"wo", "o",  "out", "v",  "view",   "omegao",   "do",
-                                                            "wv", "vo", "r",   "wr", "omegar", "omegaout", "wout"};
+  static constexpr std::array<std::string_view, 21> kIn = {
+      "wi",  "i",  "in",  "l",   "light",    "omegai",   "di",       "wl",    "vi",    "li",    "omegain",
+      "win", "ki", "kin", "sun", "incident", "incoming", "lightdir", "indir", "dirin", "sundir"};
+  static constexpr std::array<std::string_view, 23> kOut = {
+      "wo", "o",        "out",       "v",       "view",   "omegao",   "do",     "wv",
+      "vo", "r",        "wr",        "omegar",  "wout",   "omegaout", "ko",     "kout",
+      "kr", "outgoing", "reflected", "viewdir", "outdir", "dirout",   "exitant"};
   const int base = HoldsWord(kIn, joined)    ? static_cast<int>(Coordinate::kWiX)
                    : HoldsWord(kOut, joined) ? static_cast<int>(Coordinate::kWoX)
                                              : -1;

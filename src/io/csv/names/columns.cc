@@ -167,6 +167,37 @@ bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {
   return true;
 }
 
+// "45as15", "r45as-15": light at 45 degrees, seen 15 degrees from its mirror direction towards it.
+bool ClassifyGeometry(std::string_view name, CsvColumn* column) {
+  name = Trim(name);
+  if (name.starts_with('r') || name.starts_with('R')) name.remove_prefix(1);
+  const std::size_t at = name.find("as");
+  if (name.empty() || at == 0 || at > 3 || name.size() > 8 || at == std::string_view::npos) return false;
+  const std::optional<double> incidence = ParseDouble(name.substr(0, at)), offset = ParseDouble(name.substr(at + 2));
+  if (!incidence || !offset || !(*incidence >= 0 && *incidence < 90) || !(std::fabs(*offset) < 180)) return false;
+  column->role = ColumnRole::kFixed;
+  column->coordinate = Coordinate::kFromSpecular;
+  column->fixed = *offset;
+  column->fixed_incidence = incidence;
+  column->angle_unit = AngleUnit::kDegrees;
+  column->reversed = true;
+  return true;
+}
+
+// "cos_sza"
+bool IsCosineOfSynonym(std::string_view joined, CsvColumn* column) {
+  if (!joined.starts_with("cos_")) return false;
+  const auto* synonym =
+      std::find_if(kSynonyms.begin(), kSynonyms.end(), [&](const Synonym& s) { return s.name == joined.substr(4); });
+  if (synonym == kSynonyms.end() || synonym->role != ColumnRole::kCoordinate ||
+      (synonym->coordinate != Coordinate::kThetaI && synonym->coordinate != Coordinate::kThetaO))
+    return false;
+  column->role = ColumnRole::kCoordinate;
+  column->coordinate = synonym->coordinate;
+  column->form = AngleForm::kCosine;
+  return true;
+}
+
 bool IsValueWord(const std::string& word) {
   std::optional<ValueKind> kind;
   return NamesValue(word, &kind);
@@ -280,7 +311,9 @@ bool ClassifyFixed(const NameList& words, CsvColumn* column) {
     column->angle_unit = ParseAngleUnit(unit);
     return true;
   }
-  const CsvColumn left = ClassifyName(Joined(rest), Fixed::kNot);
+  // "i=10" of planetary work and of tables of lighting.
+  const bool letter = rest.size() == 1 && rest[0] == "i" && column->name.find('=') != std::string::npos;
+  const CsvColumn left = ClassifyName(letter ? "theta_i" : Joined(rest), Fixed::kNot);
   if (left.role != ColumnRole::kCoordinate) return false;
   column->role = ColumnRole::kFixed;
   column->coordinate = left.coordinate;
@@ -339,6 +372,7 @@ CsvColumn ClassifyName(std::string_view name, Fixed fixed) {
   }
   CsvColumn column;
   column.name = std::string(Trim(name));
+  if (ClassifyGeometry(name, &column)) return column;
   NameWords split = SplitName(name);
   if (split.words.size() > 12) return column;
   column.unit = split.unit;
@@ -379,6 +413,9 @@ CsvColumn ClassifyName(std::string_view name, Fixed fixed) {
     column.role = synonym->role;
     column.coordinate = synonym->coordinate;
     column.magnitude = split.magnitude;
+    // 45as15 is 15 degrees from the mirror direction towards the light (ASTM E2194, DIN 6175-2).
+    column.reversed = column.aspecular = joined.starts_with("aspecular");
+  } else if (plain && IsCosineOfSynonym(joined, &column)) {
   } else if (attempt([&](CsvColumn* c) { return ClassifyValue(split, c); })) {
   } else if (attempt([&](CsvColumn* c) { return ClassifySpread(split, c); })) {
   } else if (plain && attempt([&](CsvColumn* c) { return ClassifyPolarisation(split.words, c); })) {

@@ -66,11 +66,13 @@ struct CsvColumn {
   ColumnRole role = ColumnRole::kUnknown;
   Coordinate coordinate = Coordinate::kThetaI;  // kCoordinate and kFixed
   double fixed = 0;                             // kFixed, kNumber: the number of the name
+  std::optional<double> fixed_incidence;        // kFixed of "45as15": 45, in degrees, beside the aspecular angle
   std::string unit;                             // as written in the name or in a row of units
   bool foreign = false;                         // the name is of another language than English
   std::optional<AngleUnit> angle_unit;          // stated by the name
   AngleForm form = AngleForm::kPolar;
   bool reversed = false;                  // theta_i - theta_o instead of theta_o - theta_i
+  bool aspecular = false;                 // reversed by a convention that not all keep to
   bool magnitude = false;                 // |beta - beta0|
   bool of_viewer = false;                 // kPolarisation: behind the sample, before the detector
   bool letter_s = false;                  // "theta_s": scattered, or of the sun where theta_v stands beside it

@@ -13,9 +13,15 @@ struct Translation {
 };
 
 // Longer ones before those that they begin with.
-constexpr std::array<Translation, 66> kScripts = {{
+constexpr std::array<Translation, 72> kScripts = {{
     {"双向反射分布函数", "brdf"},
     {"双方向反射率分布関数", "brdf"},
+    {"反射率因子", "reflectance factor"},
+    {"反射率係数", "reflectance factor"},
+    {"反射率系数", "reflectance factor"},
+    {"亮度系数", "luminance coefficient"},
+    {"亮度因数", "luminance factor"},
+    {"輝度率", "luminance factor"},
     {"反射率", "reflectance"},
     {"入射", "incident"},
     {"照明", "illumination"},

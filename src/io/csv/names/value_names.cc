@@ -93,17 +93,33 @@ constexpr auto kValues = std::to_array<ValueName>({
     {"bidirectional_reflectance_factor", ValueKind::kReflectanceFactor},
     {"radiance_factor", ValueKind::kReflectanceFactor},
     {"radiance_coefficient", ValueKind::kReflectanceFactor},
+    {"reff", ValueKind::kReflectanceFactor},  // of planetary work, pi f_r
+    {"strahldichtefaktor", ValueKind::kReflectanceFactor},
+    {"strahldichtekoeffizient", ValueKind::kReflectanceFactor},
+    {"bidirektionaler_reflexionsfaktor", ValueKind::kReflectanceFactor},
+    {"facteur_reflectance", ValueKind::kReflectanceFactor},
+    {"facteur_reflectance_bidirectionnelle", ValueKind::kReflectanceFactor},
+    {"facteur_luminance", ValueKind::kReflectanceFactor},
+    {"facteur_radiance", ValueKind::kReflectanceFactor},
+    {"factor_reflectancia", ValueKind::kReflectanceFactor},
+    {"factor_reflectancia_bidireccional", ValueKind::kReflectanceFactor},
+    {"factor_radiancia", ValueKind::kReflectanceFactor},
+    {"fattore_riflettanza", ValueKind::kReflectanceFactor},
+    {"fattore_radianza", ValueKind::kReflectanceFactor},
+    {"fator_refletancia", ValueKind::kReflectanceFactor},
+    {"luminance_factor", ValueKind::kReflectanceFactor},  // of colorimetry
     {"radiance_factor_beta", ValueKind::kReflectanceFactor},
     {"beta_radiance_factor", ValueKind::kReflectanceFactor},
     {"intensity", ValueKind::kIntensity},
     {"rt", ValueKind::kReading},
 });
 
+constexpr ByFirstByte<kValues.size()> kValuesByByte(kValues, [](const ValueName& value) { return value.name; });
+
 const ValueName* FindValue(std::string_view joined) {
-  for (const ValueName& value : kValues) {
-    if (SameWord(value.name, joined)) return &value;
-  }
-  return nullptr;
+  const std::size_t found =
+      kValuesByByte.Find(joined, [&](std::size_t i) { return SameWord(kValues[i].name, joined); });
+  return found < kValues.size() ? &kValues[found] : nullptr;
 }
 
 void SetWavelength(double nm, CsvColumn* column) {
@@ -283,13 +299,15 @@ bool ClassifyValue(const NameWords& name, CsvColumn* column) {
   } else if (joined == "q" && (name.unit.starts_with("cd") || name.unit.starts_with("mcd"))) {
     column->role = ColumnRole::kValue;  // of a road surface
     column->value_kind = ValueKind::kBrdf;
-  } else if (joined == "i_f" || joined == "radf") {
+  } else if (joined == "i_f" || joined == "radf" || joined == "iof" || joined == "io_f") {
     column->role = ColumnRole::kValue;
     column->value_kind = ValueKind::kReflectanceCosI;
   } else if (joined == "reflectance" || joined == "reflectivity" || joined == "refl" || joined == "reflexion" ||
-             joined == "reflectances" || joined == "bdr" || (joined == "scatter" && !ParseAngleUnit(name.unit)) ||
-             joined == "brdf_cos" || joined == "bsdf_cos" || joined == "f_cos" || joined == "fr_cos" ||
-             joined == "cos_brdf" || joined == "cosine_brdf" || joined == "cosine_weighted_brdf") {
+             joined == "reflectances" || joined == "bdr" || joined == "reflectancia" || joined == "riflettanza" ||
+             joined == "refletancia" || joined == "reflektanz" || joined == "reflexionsgrad" || joined == "rho" ||
+             (joined == "scatter" && !ParseAngleUnit(name.unit)) || joined == "brdf_cos" || joined == "bsdf_cos" ||
+             joined == "f_cos" || joined == "fr_cos" || joined == "cos_brdf" || joined == "cosine_brdf" ||
+             joined == "cosine_weighted_brdf") {
     column->role = ColumnRole::kOtherValue;
   } else {
     return false;

@@ -211,8 +211,8 @@ void AppendWord(std::string word, NameWords* split) {
     }
     return;
   }
-  static constexpr std::array<std::string_view, 10> kHeads = {"theta",  "phi",  "azimuth", "zenith",    "beta",
-                                                              "lambda", "azim", "delta",   "elevation", "mu"};
+  static constexpr std::array<std::string_view, 11> kHeads = {"theta", "phi",   "azimuth",   "zenith", "beta", "lambda",
+                                                              "azim",  "delta", "elevation", "mu",     "teta"};
   static constexpr std::array<std::string_view, 26> kTails = {
       "i", "in", "inc", "incident", "o",    "out", "r",   "refl", "s",     "scat",  "v",   "view", "l",
       "e", "0",  "d",   "h",        "diff", "obs", "det", "sun",  "light", "theta", "phi", "beta", "half"};

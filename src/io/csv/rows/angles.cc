@@ -4,8 +4,12 @@
 #include <cmath>
 
 #include "lobefit/base/text/text.h"
+#include "lobefit/io/csv/names/name_rules.h"
+#include "lobefit/io/csv/rows/geometries.h"
+#include "lobefit/io/csv/rows/short_names.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 namespace {
@@ -28,11 +32,13 @@ class AngleFinder {
         head_(header.head_coordinate) {}
 
   void Find() {
+    NameShortAngles(&columns_);
     DropCosines();
     ChooseUnit();
     ResolveLetters();
     ResolveDifferences();
     ResolveLone();
+    ResolveSurface();
     ResolveViewerZero();
     ResolvePhase();
     DropRedundant();
@@ -120,6 +126,21 @@ class AngleFinder {
     const bool detector = Column(C::kThetaD) != nullptr;
     Become(C::kPhiD, detector ? C::kPhiO : C::kDeltaPhi);
     Become(C::kThetaD, C::kThetaO);
+  }
+
+  // Where a sentence of the file says that polar angles count from the surface. An explicit choice goes first.
+  bool CountsFromSurface(C coordinate) const {
+    const bool light = coordinate == C::kThetaI;
+    if (!light && coordinate != C::kThetaO) return false;
+    return (light ? header_.keys.light_from_surface : header_.keys.viewer_from_surface) &&
+           options_.columns.find(light ? "theta_i=" : "theta_o=") == std::string::npos;
+  }
+  void ResolveSurface() {
+    for (CsvColumn& column : columns_) {
+      if ((column.role == ColumnRole::kCoordinate || column.role == ColumnRole::kFixed) &&
+          column.form == AngleForm::kPolar && CountsFromSurface(column.coordinate))
+        column.form = AngleForm::kElevation;
+    }
   }
 
   bool HasLight() { return Known(C::kThetaI) || Known(C::kBeta0); }
@@ -251,6 +272,43 @@ class AngleFinder {
     }
   }
 
+  // Of an offset from the mirror direction. That of "aspecular" is a convention that not all keep to: where the first
+  // rows would lie beyond the horizon by it, and none without, it is the other one.
+  bool IsTowardsLight(const CsvColumn& column) {
+    if (!column.aspecular || column.magnitude) return column.reversed;
+    const CsvColumn* in = Column(C::kThetaI);
+    const FixedCoordinate* fixed = header_.keys.Find(C::kThetaI);
+    std::size_t beyond_towards = 0, beyond_away = 0;
+    for (const std::vector<std::string>& row : header_.first_rows) {
+      const double theta_i = in != nullptr      ? Angle(row, in)
+                             : fixed != nullptr ? fixed->number * Scale(C::kThetaI, fixed->unit)
+                                                : std::nan("");
+      const double offset = Angle(row, &column);
+      beyond_towards += std::fabs(theta_i - offset) > kPi / 2 ? 1 : 0;
+      beyond_away += std::fabs(theta_i + offset) > kPi / 2 ? 1 : 0;
+    }
+    const bool towards = beyond_towards == 0 || beyond_away > 0;
+    const std::string away = towards ? "theta_o - theta_i" : "theta_i - theta_o";
+    notes_.remarks.push_back(QuotedName(column) + " counts from the mirror direction " +
+                             (towards ? "towards the light, as in 45as15" : "away from the light") + "; --columns \"" +
+                             away + "=" + Excerpt(column.name) + "\" counts it the other way");
+    return towards;
+  }
+
+  // Vectors along the propagation of the light point into the surface.
+  bool PointsDown() {
+    const CsvColumn* in = Column(C::kWiZ);
+    const CsvColumn* out = Column(C::kWoZ);
+    if (in == nullptr || out == nullptr || options_.incident_sense || header_.keys.incident_sense) return false;
+    std::size_t rows = 0, down = 0;
+    for (const std::vector<std::string>& row : header_.first_rows) {
+      const double z_i = Angle(row, in), z_o = Angle(row, out);
+      rows += std::isnan(z_i + z_o) ? 0 : 1;
+      down += z_i < 0 && z_o > 0 ? 1 : 0;
+    }
+    return rows > 0 && down == rows;
+  }
+
   void Give() {
     DirectionReader& directions = layout_.directions;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -267,7 +325,7 @@ class AngleFinder {
       }
       directions.Give(column.coordinate, Scale(column), column.form);
       if (column.coordinate == C::kFromSpecular || column.coordinate == C::kBetaOffset)
-        directions.SetOffset(column.reversed, column.magnitude);
+        directions.SetOffset(IsTowardsLight(column), column.magnitude);
       layout_.coordinates.emplace_back(column.coordinate, i);
     }
     const CsvColumn* first = nullptr;
@@ -278,11 +336,24 @@ class AngleFinder {
         Fail("the columns " + QuotedName(*first) + " and " + QuotedName(column) +
              " have different units; use one unit");
       directions.Give(column.coordinate, Scale(column), column.form);
+      if (column.fixed_incidence) {
+        directions.Give(C::kThetaI, RadiansPerUnit(AngleUnit::kDegrees));
+        directions.SetOffset(column.reversed, false);
+      }
+      if (column.fixed_incidence.has_value() != first->fixed_incidence.has_value()) {
+        Fail("the columns " + QuotedName(*first) + " and " + QuotedName(column) +
+             " hold values at angles of different kinds; put them into files of their own");
+      }
     }
-    if (head_) directions.Give(*head_, Scale(*head_, std::nullopt));
+    if (head_) {
+      directions.Give(*head_, Scale(*head_, std::nullopt),
+                      CountsFromSurface(*head_) ? AngleForm::kElevation : AngleForm::kPolar);
+    }
     for (const FixedCoordinate& fixed : header_.keys.fixed) {
       if (directions.Has(fixed.coordinate)) continue;
-      directions.Give(fixed.coordinate, Scale(fixed.coordinate, fixed.unit), fixed.form);
+      const bool from_surface = fixed.form == AngleForm::kPolar && CountsFromSurface(fixed.coordinate);
+      directions.Give(fixed.coordinate, Scale(fixed.coordinate, fixed.unit),
+                      from_surface ? AngleForm::kElevation : fixed.form);
       layout_.fixed[static_cast<std::size_t>(fixed.coordinate)] = fixed.number;
       const std::string& mention = header_.keys.mention_of_incidence;
       if (fixed.coordinate == C::kThetaI && !mention.empty()) {
@@ -303,6 +374,10 @@ class AngleFinder {
           "', which does not say whose azimuth it is; name it phi_i, phi_o or dphi (180 degrees is the mirror's side)");
     }
     const std::string missing = directions.Missing();
+    if (!missing.empty()) {
+      const std::string geometry = DescribeGeometries(columns_, header_.first_rows);
+      if (!geometry.empty()) Fail(geometry);
+    }
     if (!missing.empty()) {
       std::vector<std::string> names;
       for (const CsvColumn& column : columns_) names.push_back(Excerpt(column.name));
@@ -331,10 +406,17 @@ class AngleFinder {
     }
     const IncidentSense sense =
         options_.incident_sense.value_or(header_.keys.incident_sense.value_or(IncidentSense::kTowardsSource));
-    directions.SetPropagation(sense == IncidentSense::kPropagation);
-    notes_.conventions["incident"] = Name(sense) + (options_.incident_sense       ? " (option)"
-                                                    : header_.keys.incident_sense ? " (header)"
-                                                                                  : " (default)");
+    const bool down = PointsDown();
+    directions.SetPropagation(sense == IncidentSense::kPropagation || down);
+    if (down) {
+      notes_.remarks.push_back(
+          "the light's vectors point into the surface, so they are taken as along its propagation");
+    }
+    notes_.conventions["incident"] =
+        Name(down ? IncidentSense::kPropagation : sense) + (down                          ? " (by the first rows)"
+                                                            : options_.incident_sense     ? " (option)"
+                                                            : header_.keys.incident_sense ? " (header)"
+                                                                                          : " (default)");
     if (notes_.conventions.count("azimuths") == 0 && !directions.Azimuths().empty())
       notes_.conventions["azimuths"] = directions.Azimuths();
   }

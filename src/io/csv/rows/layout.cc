@@ -11,10 +11,12 @@
 #include "lobefit/base/text/text.h"
 #include "lobefit/io/csv/head/mapping.h"
 #include "lobefit/io/csv/head/row_conditions.h"
+#include "lobefit/io/csv/head/value_mention.h"
 #include "lobefit/io/csv/names/name_rules.h"
 #include "lobefit/io/csv/names/polarised_columns.h"
 #include "lobefit/io/csv/rows/angles.h"
 #include "lobefit/io/csv/rows/uncertainties.h"
+#include "lobefit/io/csv/rows/value_columns.h"
 #include "lobefit/io/csv/rows/value_unit.h"
 #include "lobefit/io/text/options.h"
 #include "lobefit/io/text/place.h"
@@ -163,6 +165,9 @@ class LayoutBuilder {
 
   // Names that are numbers, where the head says what they are.
   void ResolveHead() {
+    const bool chosen = options_.value_column || !header_.keys.value_column.empty();
+    const std::string repetitions = header_.head_coordinate ? "" : SetRepetitionsAside(chosen, &columns_);
+    if (!repetitions.empty()) Fail(repetitions);
     std::vector<std::string> numbers;
     for (CsvColumn& column : columns_) {
       const bool bare = column.role == ColumnRole::kChannel && column.wavelength_nm > 0 &&
@@ -189,6 +194,8 @@ class LayoutBuilder {
       Fail("no column is named '" + Excerpt(name) + "', which --value-column asks for; the columns are " +
            NamesOf(columns_));
     CsvColumn& column = columns_[at];
+    // "Panel BRF" is one, whatever else stands beside it.
+    if (!column.value_kind) column.value_kind = KindNamedIn(column.name);
     if (IsReading(column) && !column.value_scale) column.value_scale = ValueScale{ValueScale::Form::kLinear, 1, true};
     layout_.groups = {{{}, {at}}};
     layout_.channels.names = {column.role == ColumnRole::kChannel ? column.channel : "Y"};
@@ -199,8 +206,10 @@ class LayoutBuilder {
   // A table with a column for each angle.
   bool ChooseFixedGroups() {
     for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (columns_[i].role == ColumnRole::kFixed)
-        layout_.groups.push_back({{{columns_[i].coordinate, columns_[i].fixed}}, {i}});
+      if (columns_[i].role != ColumnRole::kFixed) continue;
+      layout_.groups.push_back({{{columns_[i].coordinate, columns_[i].fixed}}, {i}});
+      if (columns_[i].fixed_incidence)
+        layout_.groups.back().fixed.emplace_back(Coordinate::kThetaI, *columns_[i].fixed_incidence);
     }
     if (layout_.groups.empty()) return false;
     const auto value = std::find_if(columns_.begin(), columns_.end(),
@@ -282,7 +291,21 @@ class LayoutBuilder {
       }
       if (!candidates.empty())
         Fail("several columns can be the value: " + Excerpt(Join(names), 200) + "; choose one with --value-column");
+      const bool known = options_.value_kind || header_.keys.value_kind || FindValueMention(header_.titles).kind;
+      const std::vector<std::string> reflectances = TakeReflectances(known, &columns_);
+      if (!reflectances.empty() && known) return ChooseChannels();
+      if (!reflectances.empty()) {
+        Fail("the columns " + Excerpt(Join(reflectances), 80) +
+             " can be reflectance factors, pi f_r, or f_r; say it with --value-kind pi-f or --value-kind f");
+      }
       const std::size_t other = FindPossibleValue(columns_);
+      // "Reflectance" below "BRF Values".
+      if (other < columns_.size() && columns_[other].role == ColumnRole::kOtherValue && !options_.value_kind &&
+          FindValueMention(header_.titles).kind) {
+        columns_[other].role = ColumnRole::kValue;
+        return ChooseChannels();
+      }
+      if (other < columns_.size() && TakeOnlyNamed(&columns_)) return ChooseChannels();
       if (other < columns_.size()) {
         Fail("the column " + QuotedName(columns_[other]) +
              " can be f_r, pi f_r, f_r times a cosine or something else; say it with --value-column \"" +
@@ -294,6 +317,12 @@ class LayoutBuilder {
              " can be readings of an unknown scale: choose them with "
              "--value-column \"" +
              Excerpt(reading->name) + "\", and fit with --scale free");
+      }
+      const std::vector<std::string> unknown = FindUnknownNumbers(header_, columns_);
+      if (!unknown.empty()) {
+        Fail("no column is known to hold values; if it is one of " + Excerpt(Join(unknown), 120) +
+             ", choose it with --value-column \"" + unknown[0] +
+             "\" (and --value-kind, where it is not f_r). Allowed: " + AllowedColumns());
       }
       Fail("no column holds values; allowed: " + AllowedColumns() + "; or choose one with --value-column");
     }
