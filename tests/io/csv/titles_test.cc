@@ -56,7 +56,7 @@ TEST(CsvTitles, GiveWay) {
 TEST(CsvTitles, ChangeNothing) {
   for (const char* title : {"BRDF of a tile", "# Calibrated against the BRF of a NIST standard", "# BRF file: tile.txt",
                             "# BRDF, computed from BRF", "# truth, factor: 2", "# Lens factor 2", "USDA ARS soil 3",
-                            "# The BRF model was not used"})
+                            "# The BRF model was not used", "# Reflectance standard SRS-99"})
     EXPECT_EQ(ValueBelow(title), 0.5) << title;
   EXPECT_TRUE(HasRemark(ReadText(Below("# BRDF and BRF of the sample")), "more than one kind of value"));
 }

@@ -33,9 +33,9 @@ bool MayNameKind(std::string_view lower) {
 
 // What a line is about that names a kind of value without being about those of the file.
 bool SpeaksOfAnother(std::string_view lower) {
-  static constexpr std::array<std::string_view, 13> kParts = {"usda",    "calibrat", "nist",   "interpol", "divided",
+  static constexpr std::array<std::string_view, 15> kParts = {"usda",    "calibrat", "nist",   "interpol", "divided",
                                                               "convert", "model",    "fitted", "not ",     "program",
-                                                              "file",    "/ pi",     "/pi"};
+                                                              "file",    "standard", "target", "/ pi",     "/pi"};
   return HoldsAnyPart(lower, kParts);
 }
 

@@ -12,132 +12,6 @@
 namespace lobefit {
 namespace {
 
-// Whole names, joined by "_", that are none of the grammar's.
-struct Synonym {
-  std::string_view name;
-  ColumnRole role;
-  Coordinate coordinate = Coordinate::kThetaI;
-};
-constexpr std::array<Synonym, 56> kSynonyms = {{
-    {"emi", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"pha", ColumnRole::kCoordinate, Coordinate::kPhase},
-    {"aoi", ColumnRole::kCoordinate, Coordinate::kThetaI},
-    {"incidence", ColumnRole::kCoordinate, Coordinate::kThetaI},
-    {"incident", ColumnRole::kCoordinate, Coordinate::kThetaI},
-    {"inc", ColumnRole::kCoordinate, Coordinate::kThetaI},
-    {"einfallswinkel", ColumnRole::kCoordinate, Coordinate::kThetaI},
-    {"sza", ColumnRole::kCoordinate, Coordinate::kThetaI},
-    {"iza", ColumnRole::kCoordinate, Coordinate::kThetaI},
-    {"saa", ColumnRole::kCoordinate, Coordinate::kPhiI},
-    {"iaa", ColumnRole::kCoordinate, Coordinate::kPhiI},
-    {"vza", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"oza", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"receive", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"emission", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"emergence", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"viewing", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"ausfallswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"streuwinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"beobachtungswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"detektorwinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"reflexionswinkel", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"aor", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"aov", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"aos", ColumnRole::kCoordinate, Coordinate::kThetaO},
-    {"vaa", ColumnRole::kCoordinate, Coordinate::kPhiO},
-    {"oaa", ColumnRole::kCoordinate, Coordinate::kPhiO},
-    {"raa", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
-    {"dphi", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
-    {"dazimuth", ColumnRole::kCoordinate, Coordinate::kDeltaPhi},
-    {"phase", ColumnRole::kCoordinate, Coordinate::kPhase},
-    {"phase_angle", ColumnRole::kCoordinate, Coordinate::kPhase},
-    {"delta_theta", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
-    {"dtheta", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
-    {"aspecular", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
-    {"aspecular_angle", ColumnRole::kCoordinate, Coordinate::kFromSpecular},
-    {"bistatic", ColumnRole::kCoordinate, Coordinate::kBistatic},
-    {"bistatic_angle", ColumnRole::kCoordinate, Coordinate::kBistatic},
-    {"deviation_angle", ColumnRole::kCoordinate, Coordinate::kDeviation},
-    {"angle_of_deviation", ColumnRole::kCoordinate, Coordinate::kDeviation},
-    {"total_deviation", ColumnRole::kCoordinate, Coordinate::kDeviation},
-    {"total_deviation_angle", ColumnRole::kCoordinate, Coordinate::kDeviation},
-    {"beta_0", ColumnRole::kCoordinate, Coordinate::kBeta0},
-    {"beta", ColumnRole::kCoordinate, Coordinate::kBeta},
-    {"beta_s", ColumnRole::kCoordinate, Coordinate::kBeta},
-    {"beta_beta_0", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
-    {"b_b0", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
-    {"delta_beta", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
-    {"dbeta", ColumnRole::kCoordinate, Coordinate::kBetaOffset},
-    {"sample_rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
-    {"rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
-    {"sample_azimuth", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
-    {"stage_rotation", ColumnRole::kCoordinate, Coordinate::kSampleRotation},
-    {"weight", ColumnRole::kWeight},
-    {"weights", ColumnRole::kWeight},
-    {"fr_authors_formula", ColumnRole::kOtherValue},
-}};
-
-constexpr std::array<std::string_view, 55> kIgnored = {"index",
-                                                       "id",
-                                                       "no",
-                                                       "nr",
-                                                       "row",
-                                                       "rows",
-                                                       "n",
-                                                       "num",
-                                                       "number",
-                                                       "#",
-                                                       "point",
-                                                       "time",
-                                                       "date",
-                                                       "datetime",
-                                                       "timestamp",
-                                                       "temperature",
-                                                       "temp",
-                                                       "humidity",
-                                                       "comment",
-                                                       "comments",
-                                                       "remark",
-                                                       "remarks",
-                                                       "note",
-                                                       "notes",
-                                                       "operator",
-                                                       "file",
-                                                       "filename",
-                                                       "l_o_raw",
-                                                       "radiance",
-                                                       "irradiance",
-                                                       "raw",
-                                                       "counts",
-                                                       "signal",
-                                                       "dark",
-                                                       "reference",
-                                                       "gain",
-                                                       "exposure",
-                                                       "exposure_time",
-                                                       "integration_time",
-                                                       "power",
-                                                       "distance",
-                                                       "solid_angle",
-                                                       "aperture",
-                                                       "user",
-                                                       "sample",
-                                                       "material",
-                                                       "status",
-                                                       "flag",
-                                                       "scan",
-                                                       "step",
-                                                       "unnamed",
-                                                       "unnamed_0",
-                                                       "voltage",
-                                                       "current",
-                                                       "background"};
-
-// Short names of angles that mean nothing else.
-constexpr std::array<std::string_view, 18> kAngleShorthands = {"aoi", "aor",  "aos",    "aov",      "sza",       "iza",
-                                                               "saa", "iaa",  "vza",    "oza",      "vaa",       "oaa",
-                                                               "raa", "dphi", "dtheta", "dazimuth", "aspecular", "psi"};
-
 // "pol", "source polarization", "analyzer angle (deg)": what tells rows of the same directions apart.
 bool ClassifyPolarisation(const NameList& words, CsvColumn* column) {
   static constexpr std::array<std::string_view, 11> kPolarisation = {"pol",
@@ -184,20 +58,6 @@ bool ClassifyGeometry(std::string_view name, CsvColumn* column) {
   return true;
 }
 
-// "cos_sza"
-bool IsCosineOfSynonym(std::string_view joined, CsvColumn* column) {
-  if (!joined.starts_with("cos_")) return false;
-  const auto* synonym =
-      std::find_if(kSynonyms.begin(), kSynonyms.end(), [&](const Synonym& s) { return s.name == joined.substr(4); });
-  if (synonym == kSynonyms.end() || synonym->role != ColumnRole::kCoordinate ||
-      (synonym->coordinate != Coordinate::kThetaI && synonym->coordinate != Coordinate::kThetaO))
-    return false;
-  column->role = ColumnRole::kCoordinate;
-  column->coordinate = synonym->coordinate;
-  column->form = AngleForm::kCosine;
-  return true;
-}
-
 bool IsValueWord(const std::string& word) {
   std::optional<ValueKind> kind;
   return NamesValue(word, &kind);
@@ -207,72 +67,6 @@ bool IsValueWord(const std::string& word) {
 bool IsMuellerRatio(const NameList& words) {
   return words.size() == 4 && words[0] == "f" && words[2] == "f" && words[3] == "r11" && words[1].size() == 3 &&
          words[1][0] == 'r';
-}
-
-void ParseUnit(CsvColumn* column) {
-  const std::string& unit = column->unit;
-  if (unit.empty()) return;
-  const auto refuse = [&](const std::string& allowed) {
-    if (column->problem.empty())
-      column->problem = "has the unit '" + Excerpt(unit) + "', which is not known; allowed are " + allowed;
-  };
-  switch (column->role) {
-    case ColumnRole::kCoordinate:
-    case ColumnRole::kFixed: {
-      const bool cosine = (column->coordinate >= Coordinate::kWiX && column->coordinate <= Coordinate::kWoZ) ||
-                          column->form == AngleForm::kCosine;
-      const bool sine = column->coordinate == Coordinate::kBeta || column->coordinate == Coordinate::kBeta0 ||
-                        column->coordinate == Coordinate::kBetaOffset;
-      if (cosine || sine) break;
-      column->angle_unit = ParseAngleUnit(unit);
-      if (!column->angle_unit)
-        refuse(
-            unit == "grad"
-                ? "deg, rad, gon, mrad (grad is read as deg by some and as gon by others: say which with --angle-unit)"
-                : "deg, rad, gon, mrad, arcmin, arcsec");
-      break;
-    }
-    case ColumnRole::kWavelength:
-      column->wavelength_unit = ParseWavelengthUnit(unit);
-      if (!column->wavelength_unit) refuse("nm, um, mm, m, A, cm^-1, eV, THz, GHz");
-      break;
-    case ColumnRole::kValue:
-    case ColumnRole::kOtherValue:
-      if (column->value_scale) {
-        const std::optional<ValueScale> own = ParseValueScale(unit);
-        if (!own || (own->form != ValueScale::Form::kLinear && own->form != column->value_scale->form)) {
-          refuse("1/sr");
-        } else if (own->form == ValueScale::Form::kLinear) {
-          column->value_scale->factor *= own->factor;
-        }
-        break;
-      }
-      column->value_scale = ParseValueScale(unit);
-      if (!column->value_scale && column->role == ColumnRole::kValue)
-        refuse("1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.");
-      break;
-    case ColumnRole::kChannel:
-      // That of a wavelength in the name.
-      if (column->wavelength_nm > 0 && ParseWavelengthUnit(unit)) break;
-      column->value_scale = ParseValueScale(unit);
-      if (!column->value_scale) refuse("1/sr, %, dB, log10, ln, a power of ten as in 1e-3/sr, a.u.");
-      break;
-    case ColumnRole::kSigma:
-      if (unit == "%" || unit == "percent") column->relative = true;
-      // "k=2" below "U".
-      if (unit.starts_with("k=") && ParseDouble(std::string_view(unit).substr(2)).value_or(0) > 0) {
-        column->coverage_factor = *ParseDouble(std::string_view(unit).substr(2));
-        column->problem.clear();
-        column->unit.clear();
-      } else if (unit == "ppm" || unit == "rel" || unit == "rel.") {
-        column->relative = true;
-      } else if (!column->relative && !ParseValueScale(unit)) {
-        refuse("1/sr, %, ppm, dB, a power of ten as in 1e-3/sr");
-      }
-      break;
-    default:
-      break;
-  }
 }
 
 enum class Fixed : std::uint8_t { kTried, kNot };
@@ -392,8 +186,7 @@ CsvColumn ClassifyName(std::string_view name, Fixed fixed) {
     return column;
   }
   const std::string joined = Joined(split.words);
-  const auto* synonym =
-      std::find_if(kSynonyms.begin(), kSynonyms.end(), [&](const Synonym& s) { return SameWord(s.name, joined); });
+  const WholeName* const whole = FindWholeName(joined);
   const NameList meaning = WithoutFillers(split.words);
   const CsvColumn blank = column;
   // Each rule starts from the bare name: one that does not match may have set some of what the next would not.
@@ -407,32 +200,36 @@ CsvColumn ClassifyName(std::string_view name, Fixed fixed) {
   // "theta_o=0" is no "theta_o - theta_0".
   const bool equals = name.find('=') != std::string_view::npos;
   const bool may_be_fixed = plain && fixed == Fixed::kTried;
-  if (may_be_fixed && equals &&
-      attempt([&](CsvColumn* c) { return ClassifyFixed(split.words, c) && c->role == ColumnRole::kFixed; })) {
-  } else if (plain && synonym != kSynonyms.end()) {
-    column.role = synonym->role;
-    column.coordinate = synonym->coordinate;
-    column.magnitude = split.magnitude;
+  const auto take_whole = [&](CsvColumn* c) {
+    c->role = whole->role;
+    c->coordinate = whole->coordinate;
+    c->magnitude = split.magnitude;
     // 45as15 is 15 degrees from the mirror direction towards the light (ASTM E2194, DIN 6175-2).
-    column.reversed = column.aspecular = joined.starts_with("aspecular");
-  } else if (plain && IsCosineOfSynonym(joined, &column)) {
-  } else if (attempt([&](CsvColumn* c) { return ClassifyValue(split, c); })) {
-  } else if (attempt([&](CsvColumn* c) { return ClassifySpread(split, c); })) {
-  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyPolarisation(split.words, c); })) {
-  } else if (plain && attempt([&](CsvColumn* c) {
-               return ClassifyChannel(split.words, c) && (c->role = ColumnRole::kChannel, true);
-             })) {
-  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyWavelengthColumn(meaning, c); })) {
-  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyAngle(meaning, split.magnitude, c); })) {
-  } else if (plain && attempt([&](CsvColumn* c) { return ClassifyComponent(split.words, c); })) {
-  } else if (plain && attempt([&](CsvColumn* c) {
-               return ClassifyValueOfChannel(split.words, c) && (c->role = ColumnRole::kChannel, true);
-             })) {
-  } else if (may_be_fixed && attempt([&](CsvColumn* c) { return ClassifyFixed(split.words, c); })) {
-  } else if (HoldsWord(kIgnored, joined) || IsMuellerRatio(split.words)) {
-    column.role = ColumnRole::kIgnored;
-  }
-  ParseUnit(&column);
+    c->reversed = c->aspecular = joined.starts_with("aspecular");
+    return true;
+  };
+  const auto as_channel = [](bool known, CsvColumn* c) {
+    if (known) c->role = ColumnRole::kChannel;
+    return known;
+  };
+  const NameList& words = split.words;
+  // By the first rule that matches.
+  const bool known =
+      (may_be_fixed && equals &&
+       attempt([&](CsvColumn* c) { return ClassifyFixed(words, c) && c->role == ColumnRole::kFixed; })) ||
+      (plain && whole != nullptr && attempt(take_whole)) ||
+      (plain && attempt([&](CsvColumn* c) { return ClassifyCosineOfWholeName(joined, c); })) ||
+      attempt([&](CsvColumn* c) { return ClassifyValue(split, c); }) ||
+      attempt([&](CsvColumn* c) { return ClassifySpread(split, c); }) ||
+      (plain && (attempt([&](CsvColumn* c) { return ClassifyPolarisation(words, c); }) ||
+                 attempt([&](CsvColumn* c) { return as_channel(ClassifyChannel(words, c), c); }) ||
+                 attempt([&](CsvColumn* c) { return ClassifyWavelengthColumn(meaning, c); }) ||
+                 attempt([&](CsvColumn* c) { return ClassifyAngle(meaning, split.magnitude, c); }) ||
+                 attempt([&](CsvColumn* c) { return ClassifyComponent(words, c); }) ||
+                 attempt([&](CsvColumn* c) { return as_channel(ClassifyValueOfChannel(words, c), c); }))) ||
+      (may_be_fixed && attempt([&](CsvColumn* c) { return ClassifyFixed(words, c); }));
+  if (!known && (IsIgnoredName(joined) || IsMuellerRatio(words))) column.role = ColumnRole::kIgnored;
+  ParseColumnUnit(&column);
   return column;
 }
 
@@ -459,7 +256,7 @@ void SetUnit(std::string_view unit, CsvColumn* column) {
       return;
     }
   }
-  ParseUnit(column);
+  ParseColumnUnit(column);
 }
 
 bool LooksLikeAngle(const CsvColumn& column) {
@@ -468,7 +265,7 @@ bool LooksLikeAngle(const CsvColumn& column) {
   if (ParseAngleUnit(column.unit)) return true;
   // "dphi [turn]": the words without the unit that is not known are an angle's.
   return std::any_of(split.words.begin(), split.words.end(), [](const std::string& word) {
-    return IsAngleWord(word) || ParseAngleUnit(word).has_value() || HoldsWord(kAngleShorthands, word);
+    return IsAngleWord(word) || ParseAngleUnit(word).has_value() || IsAngleShorthand(word);
   });
 }
 

@@ -27,6 +27,23 @@ std::string Joined(const NameList& words);
 NameList WithoutFillers(const NameList& words);
 bool IsFiller(std::string_view word);
 
+// A name that is none of the grammar's: "aoi", "sza", "beta_s".
+struct WholeName {
+  std::string_view name;
+  ColumnRole role;
+  Coordinate coordinate = Coordinate::kThetaI;
+};
+// By the words joined by "_"; null: none.
+const WholeName* FindWholeName(const std::string& joined);
+// "cos_sza".
+bool ClassifyCosineOfWholeName(std::string_view joined, CsvColumn* column);
+// Of columns that nothing needs: "comment", "temperature".
+bool IsIgnoredName(std::string_view joined);
+// A short name of an angle that means nothing else.
+bool IsAngleShorthand(std::string_view word);
+// Reads the unit of the column by what the column is; `problem` says what is not known.
+void ParseColumnUnit(CsvColumn* column);
+
 // Angles by what kind of angle the words speak of, and of which direction; components of directions.
 bool ClassifyAngle(const NameList& words, bool magnitude, CsvColumn* column);
 bool ClassifyComponent(const NameList& words, CsvColumn* column);
