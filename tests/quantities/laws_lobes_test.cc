@@ -48,6 +48,12 @@ TEST(LobeLaws, SpheroidsAreEllipsoidsOfEqualAxes) {
   for (const Named& row : Rows("sel", 2, 30)) {
     Named lobe = Evaluated("sel", row);
     EXPECT_NEAR(std::hypot(lobe["vx"], lobe["vy"], lobe["vz"]), 1, 1e-15);
+    // Rodrigues: w cos t + (r x w) sin t + r (r.w) (1 - cos t), r the axis.
+    const Vec3 rotation = {row.at("rot_x"), row.at("rot_y"), row.at("rot_z")};
+    const Vec3 w = Normalized(Vec3{row.at("wx"), row.at("wy"), row.at("wz")}), axis = Normalized(rotation);
+    const double turn = Norm(rotation);
+    const Vec3 v = std::cos(turn) * w + std::sin(turn) * Cross(axis, w) + (1 - std::cos(turn)) * Dot(axis, w) * axis;
+    EXPECT_NEAR(Norm(v - Vec3{lobe["vx"], lobe["vy"], lobe["vz"]}), 0, 1e-14);
     const Named straight = {{"alpha_x", row.at("alpha_x")},
                             {"alpha_y", row.at("alpha_y")},
                             {"wx", lobe["vx"]},
