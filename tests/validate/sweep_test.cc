@@ -62,8 +62,10 @@ TEST(Sweep, ShapesKeepWhatTheySay) {
   const Truth ratio = TruthAt("ratio=5");
   EXPECT_DOUBLE_EQ(ratio.values[0][0], 0.35);
   EXPECT_DOUBLE_EQ(ratio.values[1][0], 0.07);
-  const Truth tilt = TruthAt("tilt=-12");
-  EXPECT_EQ(tilt.values[2][0], 0);
+  ExperimentRequest tilted = Brushed();
+  tilted.truth.values[2] = {0.1};
+  const Truth tilt = TruthAt("tilt=-12", tilted);
+  EXPECT_EQ(tilt.values[2][0], 0) << "the other tilt goes";
   EXPECT_DOUBLE_EQ(tilt.values[3][0], DegreesToRadians(-12));
   EXPECT_DOUBLE_EQ(TruthAt("theta_z_deg=-30").values[4][0], DegreesToRadians(-30));
   EXPECT_EQ(TruthAt("f0=0.25").values[5], (std::vector<double>(3, 0.25))) << "all channels";

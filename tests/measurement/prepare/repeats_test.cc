@@ -86,6 +86,19 @@ TEST(MergeRepeated, FindsTheNoiseThatIsThere) {
   for (int r = 0; r < 3; ++r) EXPECT_NEAR(squares[r] / counts[r], 1, 0.15) << r + 1 << " readings";
 }
 
+// A pair with many repetitions speaks for itself, whatever the others scatter by; one with two hardly does.
+TEST(MergeRepeated, ManyRepetitionsHaveTheirOwnSpread) {
+  Rows rows;
+  for (int k = 0; k < 200; ++k) rows.Add(0.1, {k % 2 == 0 ? 0.5 : 1.5});
+  for (int pair = 0; pair < 400; ++pair) {
+    for (const double value : {0.99, 1.01}) rows.Add(0.2 + 0.001 * pair, {value});
+  }
+  const Repeats repeats = MergeRepeated(&rows.measurement);
+  const std::vector<double>& sigma = rows.measurement.samples.sigma;
+  EXPECT_NEAR(sigma[0], 0.5 / std::sqrt(200), 0.03 * sigma[0]);
+  EXPECT_NEAR(sigma[1], repeats.relative_spread / std::sqrt(2), 0.15 * sigma[1]);
+}
+
 TEST(DropIncomplete, WhatLacksAChannelIsAHole) {
   Rows rows(2);
   rows.Add(0.1, {1, 2});
