@@ -103,7 +103,7 @@ TEST_P(Replaced, EachMember) {
 
 INSTANTIATE_TEST_SUITE_P(HostileMaterial, Replaced,
                          testing::Values("null", "true", "-1", "1e308", "9223372036854775807", "\"\"",
-                                         "\"\\u0000\\u001b[31m\"", "[]", "[null]", "{}"));
+                                         "\"\\u0000\\u001b[31m\"", "\"abc\"", "[]", "[null]", "{}"));
 
 // Lists of a parameter are as long as its values: readers of the document index them alike.
 TEST(HostileMaterial, ListsOfOtherLengths) {
