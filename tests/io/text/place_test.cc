@@ -104,7 +104,7 @@ TEST(WordReader, CountsAreCheckedAgainstTheFile) {
   const InputFile good = {"c.txt", "3\n0 45\n90"};
   EXPECT_THAT(WordReader(good).List("angles", 0, 90), testing::ElementsAre(0, 45, 90));
   refused("4 0 45 90", "angles");
-  refused("1000000000 0 45 90", "angles");
+  refused("1000000000 0 45 90", "1000000000 values should follow, but the file has only");
   refused("18446744073709551616 0", "angles");
   refused("0", "angles");
   refused("-3 1 2 3", "angles");

@@ -1,11 +1,13 @@
 // Pictures of two angles: what is near samples, common scales, discs.
 #include "lobefit/report/figures/field_image.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "lobefit/math/vec.h"
 #include "lobefit/plot/style.h"
 
 namespace lobefit {
