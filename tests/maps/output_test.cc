@@ -89,7 +89,8 @@ class MapsExr : public FolderTest {};
 // Tiles of 64: sizes below, at and above, with NaN where nothing is known.
 TEST_F(MapsExr, EveryPixelComesBack) {
   const std::vector<MapPlane> planes = PlanesFor({MapLobe::kGgxAnisotropic, 3, true, true});
-  for (const auto& [width, height] : {std::pair<std::size_t, std::size_t>{1, 1}, {64, 64}, {65, 3}, {3, 130}}) {
+  for (const auto& size : {std::pair<std::size_t, std::size_t>{1, 1}, {64, 64}, {65, 3}, {3, 130}}) {
+    const std::size_t width = size.first, height = size.second;
     std::mt19937 engine(9);
     MapRows all = {0, height, width, std::vector<std::vector<float>>(planes.size())};
     for (std::size_t p = 0; p < planes.size(); ++p) {
