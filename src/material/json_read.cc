@@ -1,5 +1,6 @@
 // A document as a material: the head, and what stands beside model and instrument.
 #include <fstream>
+#include <limits>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -59,10 +60,12 @@ void ReadRest(const JsonReader& reader, Material* material) {
   if (covariance.contains("clustered")) material->covariance_clustered = reader.GetMatrix(covariance, "clustered", n);
   material->degenerate = reader.Get<std::vector<std::string>>(root, "degenerate");
   const Json& quality = reader.Member(root, "quality");
-  material->samples_read = reader.Get<std::size_t>(quality, "samples_read");
-  material->samples_used = reader.Get<std::size_t>(quality, "samples_used");
-  material->set_aside = reader.Get<std::map<std::string, std::size_t>>(quality, "set_aside");
-  material->cost = reader.Get<double>(quality, "cost");
+  material->samples_read = reader.GetCount<std::size_t>(quality, "samples_read");
+  material->samples_used = reader.GetCount<std::size_t>(quality, "samples_used");
+  const Json& set_aside = reader.Member(quality, "set_aside");
+  for (const auto& [reason, count] : set_aside.items())
+    material->set_aside[reason] = reader.GetCount<std::size_t>(set_aside, reason.c_str());
+  material->cost = reader.GetNumber(quality, "cost");
   material->remarks = reader.Get<std::vector<std::string>>(quality, "remarks");
   if (quality.contains("verdict")) {
     material->verdict = {reader.GetChoice(quality, "verdict", VerdictChoices()),
@@ -80,14 +83,14 @@ void ReadRest(const JsonReader& reader, Material* material) {
                            DegreesToRadians(reader.Get<double>(energy, "theta_i_deg")),
                            DegreesToRadians(reader.Get<double>(energy, "phi_i_deg")),
                            reader.Get<std::string>(energy, "channel"),
-                           reader.Get<std::size_t>(energy, "above_one"),
-                           reader.Get<std::size_t>(energy, "incidences")};
+                           reader.GetCount<std::size_t>(energy, "above_one"),
+                           reader.GetCount<std::size_t>(energy, "incidences")};
     }
   }
   if (quality.contains("tried")) {
     for (const Json& entry : reader.Member(quality, "tried")) {
       material->tried.push_back({reader.Get<std::string>(entry, "model"),
-                                 reader.Get<std::size_t>(entry, "free_parameters"),
+                                 reader.GetCount<std::size_t>(entry, "free_parameters"),
                                  reader.GetNumbers(entry, "held_out_error", 1)[0],
                                  reader.GetNumbers(entry, "ratio", 1)[0], reader.Get<bool>(entry, "chosen")});
     }
@@ -95,7 +98,7 @@ void ReadRest(const JsonReader& reader, Material* material) {
   if (quality.contains("misfit")) {
     const Json& misfit = reader.Member(quality, "misfit");
     material->misfit = {reader.Get<bool>(misfit, "tested"), reader.Get<bool>(misfit, "flagged"),
-                        reader.Get<double>(misfit, "probability"), reader.Get<double>(misfit, "size"),
+                        reader.GetWithin(misfit, "probability", 0, 1), reader.Get<double>(misfit, "size"),
                         reader.Get<std::string>(misfit, "where")};
   }
   if (root.contains("instrument"))
@@ -106,20 +109,27 @@ void ReadRest(const JsonReader& reader, Material* material) {
   }
   for (const Json& minimum : reader.Member(root, "minima")) {
     Minimum read;
-    read.cost = reader.Get<double>(minimum, "cost");
-    read.starts = reader.Get<std::size_t>(minimum, "starts");
+    read.cost = reader.GetNumber(minimum, "cost");
+    read.starts = reader.GetCount<std::size_t>(minimum, "starts");
     for (const auto& [name, value] : reader.Member(minimum, "parameters").items())
       read.parameters.emplace_back(name, value.get<double>());
     material->minima.push_back(read);
   }
   const Json& termination = reader.Member(root, "termination");
   material->termination = {reader.Get<bool>(termination, "converged"), reader.Get<bool>(termination, "determined"),
-                           reader.Get<std::string>(termination, "message"), reader.Get<int>(termination, "iterations")};
-  material->timings_s = reader.Get<std::map<std::string, double>>(root, "timings_s");
+                           reader.Get<std::string>(termination, "message"),
+                           reader.GetCount<int>(termination, "iterations")};
+  const Json& timings = reader.Member(root, "timings_s");
+  material->timings_s = {{"read", 0.0}, {"fit", 0.0}, {"report", 0.0}};  // where they are not said
+  for (const auto& [step, seconds] : timings.items())
+    material->timings_s[step] = reader.GetWithin(timings, step.c_str(), 0, std::numeric_limits<double>::max());
   const Json& source = reader.Member(root, "source");
   material->source = {reader.Get<std::string>(source, "file"), reader.Get<std::string>(source, "sha256"),
                       reader.Get<std::string>(source, "format"),
                       reader.Get<std::map<std::string, std::string>>(source, "conventions")};
+  const std::string& hash = material->source.sha256;
+  if (!hash.empty() && (hash.size() != 64 || hash.find_first_not_of("0123456789abcdef") != std::string::npos))
+    reader.Fail("member 'sha256' must hold 64 digits of 0 to 9 and a to f, or none");
   const Json& recipe = reader.Member(root, "recipe");
   material->recipe_name = reader.Get<std::string>(recipe, "name");
   material->recipe_reason = reader.Get<std::string>(recipe, "reason");
@@ -130,12 +140,12 @@ void ReadRest(const JsonReader& reader, Material* material) {
   if (recipe.contains("text")) {
     constexpr std::size_t kMostStarts = 100000;
     constexpr int kMostSteps = 100000;
-    material->used = {reader.Get<std::string>(recipe, "text"), reader.Get<std::size_t>(recipe, "starts"),
-                      reader.Get<std::uint64_t>(recipe, "seed"), reader.Get<int>(recipe, "scouting_steps"),
+    material->used = {reader.Get<std::string>(recipe, "text"), reader.GetCount<std::size_t>(recipe, "starts"),
+                      reader.GetCount<std::uint64_t>(recipe, "seed"), reader.GetCount<int>(recipe, "scouting_steps"),
                       reader.Get<std::map<std::string, std::string>>(recipe, "reading")};
     if (material->used->starts < 1 || material->used->starts > kMostStarts)
       reader.Fail(fmt::format("the recipe's 'starts' is {}; allowed are 1 to {}", material->used->starts, kMostStarts));
-    if (material->used->scouting_steps < 0 || material->used->scouting_steps > kMostSteps) {
+    if (material->used->scouting_steps > kMostSteps) {
       reader.Fail(fmt::format("the recipe's 'scouting_steps' is {}; allowed are 0 to {}",
                               material->used->scouting_steps, kMostSteps));
     }

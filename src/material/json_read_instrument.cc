@@ -1,5 +1,6 @@
 // The instrument of a document.
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -67,7 +68,8 @@ InstrumentUsed ReadInstrument(const JsonReader& reader, const Json& json, std::s
   }
   if (json.contains("drift")) {
     const Json& drift = reader.Member(json, "drift");
-    instrument.drift = {reader.Get<double>(drift, "sd"), reader.Get<bool>(drift, "estimated")};
+    instrument.drift = {reader.GetWithin(drift, "sd", 0, std::numeric_limits<double>::max()),
+                        reader.Get<bool>(drift, "estimated")};
   }
   if (json.contains("gains")) {
     for (const Json& gain : reader.Member(json, "gains")) {
@@ -86,7 +88,7 @@ InstrumentUsed ReadInstrument(const JsonReader& reader, const Json& json, std::s
     }
   }
   if (json.contains("alignment_correlation"))
-    instrument.alignment_correlation = reader.Get<double>(json, "alignment_correlation");
+    instrument.alignment_correlation = reader.GetWithin(json, "alignment_correlation", -1, 1);
   if (json.contains("sample_azimuths_deg"))
     instrument.azimuths = reader.GetNumbers(json, "sample_azimuths_deg", kPi / 180);
   if (json.contains("told_from_tilt")) instrument.told_from_tilt = reader.Get<bool>(json, "told_from_tilt");

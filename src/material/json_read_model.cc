@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "lobefit/material/json_reader.h"
+#include "lobefit/math/vec.h"
 
 namespace lobefit {
 
@@ -129,10 +130,20 @@ void ReadParameters(const JsonReader& reader, Material* material) {
     fitted.free = reader.Get<bool>(entry, "free");
     fitted.at_bound = reader.Get<bool>(entry, "at_bound");
     const std::size_t expected = parameter.per_channel ? material->channels.size() : 1;
-    if (fitted.values.size() != expected) {
-      reader.Fail(fmt::format("parameter '{}' has {} values, {} belong there", parameter.json_name,
-                              fitted.values.size(), expected));
-    }
+    // Documents without degrees of freedom do not know them.
+    if (fitted.freedom.empty()) fitted.freedom.assign(expected, kNan);
+    const auto check_count = [&](const std::vector<double>& numbers, const char* member, bool may_lack) {
+      if (numbers.size() == expected || (may_lack && numbers.empty())) return;
+      reader.Fail(fmt::format("parameter '{}' has {} {}, {} belong there", parameter.json_name, numbers.size(), member,
+                              expected));
+    };
+    check_count(fitted.values, "values", false);
+    check_count(fitted.standard_error, "of stderr", false);
+    check_count(fitted.standard_error_clustered, "of stderr_clustered", false);
+    check_count(fitted.freedom, "of clustered_freedom", false);
+    check_count(fitted.independent_freedom, "of stderr_freedom", true);
+    check_count(fitted.standard_error_by_file, "of stderr_by_file", true);
+    check_count(fitted.freedom_by_file, "of by_file_freedom", true);
     for (const double value : fitted.values) CheckRange(reader, parameter, value);
     material->parameters.push_back(fitted);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -38,6 +39,26 @@ class JsonReader {
     } catch (const Json::exception&) {
       Fail(fmt::format("member '{}' has the wrong type", name));
     }
+  }
+  // How many there are of something: the library would take -1 for the largest number and 1e308 for any.
+  template <class T>
+  T GetCount(const Json& object, const char* name) const {
+    const Json& member = Member(object, name);
+    const bool whole = member.is_number_integer() && (member.is_number_unsigned() || member.get<std::int64_t>() >= 0);
+    if (!whole || member.get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<T>::max()))
+      Fail(fmt::format("member '{}' is no whole number from 0", name));
+    return member.get<T>();
+  }
+  // NaN for null.
+  double GetNumber(const Json& object, const char* name) const {
+    const Json& member = Member(object, name);
+    return member.is_null() ? std::numeric_limits<double>::quiet_NaN() : Get<double>(object, name);
+  }
+  double GetWithin(const Json& object, const char* name, double low, double high) const {
+    const double value = Get<double>(object, name);
+    if (!(value >= low && value <= high))
+      Fail(fmt::format("member '{}' is {:g}; it must lie in [{:g}, {:g}]", name, value, low, high));
+    return value;
   }
   template <class Enum>
   Enum GetChoice(const Json& object, const char* name, const std::vector<Choice<Enum>>& choices) const {

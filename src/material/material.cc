@@ -1,5 +1,7 @@
 #include "lobefit/material/material.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "lobefit/math/vec.h"
@@ -23,14 +25,15 @@ const std::vector<Choice<VerdictKind>>& VerdictChoices() {
 }
 
 std::string EnergyText(const EnergyBalance& balance) {
-  if (!balance.absolute || balance.albedo <= 1.005) return "";
+  if (!balance.absolute || !(balance.albedo > 1.005)) return "";
   std::string text = fmt::format("an albedo of {:.3g} at theta_i {:.4g}, phi_i {:.4g} degrees in {}", balance.albedo,
                                  RadiansToDegrees(balance.theta_i), RadiansToDegrees(balance.phi_i), balance.channel);
   return text + fmt::format(", above 1 at {} of {} incident directions", balance.above_one, balance.incidences);
 }
 
 std::string PercentText(double share) {
-  if (!(share <= 10)) return "over 1000 %";
+  if (std::isnan(share)) return "unknown";
+  if (share > 10) return "over 1000 %";
   return share < 0.995 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 

@@ -75,7 +75,7 @@ struct Verdict {
   std::string advice;        // what to try next, in words; empty: nothing
 };
 const std::vector<Choice<VerdictKind>>& VerdictChoices();
-// 0.078 as "7.8 %"; "over 1000 %" beyond.
+// 0.078 as "7.8 %"; "over 1000 %" beyond; "unknown" for NaN.
 std::string PercentText(double share);
 
 // The largest directional albedo of the model at the measured incident directions.

@@ -1,6 +1,7 @@
 #include "lobefit/measurement/stated_instrument.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lobefit/base/text/text.h"
 
@@ -23,19 +24,16 @@ std::optional<StatedNoise> ParseNoiseModel(std::string_view words) {
     if (equals == std::string_view::npos) return std::nullopt;
     const std::string_view name = Trim(term.substr(0, equals));
     const std::optional<double> value = ParseDouble(Trim(term.substr(equals + 1)));
-    if (!value || !(*value >= 0)) return std::nullopt;
-    if (name == "floor") {
-      noise.floor = *value;
-    } else if (name == "relative") {
-      noise.relative = *value;
-    } else if (name == "poisson") {
-      noise.poisson = *value;
-    } else {
-      return std::nullopt;
-    }
+    double* const known = name == "floor"      ? &noise.floor
+                          : name == "relative" ? &noise.relative
+                          : name == "poisson"  ? &noise.poisson
+                                               : nullptr;
+    // Twice the same term: one of them would be passed over.
+    if (known == nullptr || *known > 0 || !value || !(*value >= 0) || !std::isfinite(*value)) return std::nullopt;
+    *known = *value;
   }
-  const bool known = (noise.floor > 0 || noise.poisson > 0) && noise.relative > 0 && noise.relative <= 1;
-  return known ? std::optional(noise) : std::nullopt;
+  const bool complete = (noise.floor > 0 || noise.poisson > 0) && noise.relative > 0 && noise.relative <= 1;
+  return complete ? std::optional(noise) : std::nullopt;
 }
 
 }  // namespace lobefit

@@ -37,7 +37,7 @@ struct StatedInstrument {
 // "auto", or a number in (0, 1]; else empty.
 std::optional<StatedDrift> ParseDrift(std::string_view word);
 
-// "floor=0.002, relative=0.03, poisson=0.0001" in any order: floor or poisson above 0, relative in (0, 1]; else empty.
+// "floor=0.002, relative=0.03, poisson=0.0001", each once: floor or poisson above 0, relative in (0, 1]; else empty.
 std::optional<StatedNoise> ParseNoiseModel(std::string_view words);
 
 }  // namespace lobefit

@@ -47,8 +47,9 @@ SlopeDistribution SlopesOf(const double* in) { return {Family::kGgx, in[0], in[1
 Profile ProfileOf(const SplinePointer& spline, const double* q) { return {spline, {q, q + spline->size()}}; }
 
 // t of a direction below which the slopes have the five parameters `in`, in extended precision: the offset from the
-// mean slope is a small difference near it.
+// mean slope is a small difference near it. Infinite at the horizon.
 double ExtendedRadius(const double* in, const double* m) {
+  if (m[2] == 0) return HUGE_VAL;
   const Real x = (Real{m[0]} / m[2] + in[3]) / in[0], y = (Real{m[1]} / m[2] + in[4]) / in[1], r = in[2];
   return static_cast<double>(((x - y) * (x - y) / (1 - r) + (x + y) * (x + y) / (1 + r)) / 2);
 }
@@ -118,7 +119,7 @@ Quantity ProfileDQuantity() {
     out[3] = ProfileD(profile, slopes, m, out + 4);
     out[0] = ExtendedRadius(in, in + 11);
     const double u = std::log1p(out[0]);
-    out[1] = profile.Excess(u) - 2.0 * u;
+    out[1] = std::isinf(u) ? -u : profile.Excess(u) - 2.0 * u;
     const double zz = m.z * m.z;
     out[2] = out[3] * (zz * zz);
   };

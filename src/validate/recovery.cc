@@ -12,6 +12,7 @@ namespace {
 
 std::string ReasonOf(const Trial& trial) {
   if (!trial.error.empty()) return "refused: " + trial.error;
+  if (std::isnan(trial.difference)) return "cannot be compared: fit and truth are not the same model";
   if (!trial.degenerate.empty()) return "not determined, and said: " + Join(trial.degenerate, "; ");
   if (!trial.converged) return "did not converge, and said";
   if (std::find(trial.at_bound.begin(), trial.at_bound.end(), true) != trial.at_bound.end())
@@ -31,7 +32,7 @@ Recovery JudgeRecovery(const Experiment&, const std::vector<Trial>& trials, doub
     const Trial& trial = trials[i];
     if (!trial.done) continue;
     ++recovery.trials;
-    const double difference = trial.error.empty() ? trial.difference : INFINITY;
+    const double difference = trial.error.empty() && !std::isnan(trial.difference) ? trial.difference : INFINITY;
     differences.push_back(difference);
     if (difference <= limit) continue;
     recovery.exceptions.push_back({i, difference, ReasonOf(trial)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -45,6 +46,44 @@ Enum ChoiceOf(const std::string& name, const std::string& value, const std::vect
   return choice->value;
 }
 
+// The truth's parameter of this name outside, the first lobe's where several have it; nothing where there is none.
+std::optional<std::size_t> PlaceOf(const std::string& name, const Truth& truth) {
+  const std::vector<Parameter> parameters = Parameters(truth.model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].json_name == name) return i;
+  }
+  return std::nullopt;
+}
+
+// Of a shape: follows another one, or is 0, by the choice of NDF.
+bool IsTied(const Parameter& parameter) { return parameter.group == ParameterGroup::kShape && !parameter.free; }
+
+// The one that the sweep needs.
+std::size_t Needed(const std::string& sweep, const char* parameter, const Truth& truth) {
+  const std::optional<std::size_t> place = PlaceOf(parameter, truth);
+  if (!place || IsTied(Parameters(truth.model)[*place])) {
+    throw UsageError(fmt::format("--sweep {}: the truth's model has no {} of its own; give a truth whose ndf has it",
+                                 sweep, parameter));
+  }
+  return *place;
+}
+
+// Sets all channels of a parameter, and what follows it. `value`: as the user gave it.
+void SetTruth(const std::string& sweep, const std::string& value, std::size_t place, double inside, Truth* truth) {
+  const std::vector<Parameter> parameters = Parameters(truth->model);
+  const Parameter& parameter = parameters[place];
+  if (!(inside >= parameter.low && inside <= parameter.high)) {
+    const double factor = InsideFactor(parameter);
+    throw UsageError(fmt::format("--sweep {}: '{}' makes {} {:g}, which lies outside [{:g}, {:g}]", sweep,
+                                 Excerpt(value), parameter.json_name, inside / factor, parameter.low / factor,
+                                 parameter.high / factor));
+  }
+  std::fill(truth->values[place].begin(), truth->values[place].end(), inside);
+  // alpha_y of a round lobe.
+  const bool is_alpha = parameter.name.ends_with("alpha_x");
+  if (is_alpha && IsTied(parameters[place + 1])) truth->values[place + 1] = truth->values[place];
+}
+
 struct Knob {
   const char* name;
   void (*turn)(const std::string& name, const std::string& value, ExperimentRequest* request);
@@ -54,16 +93,21 @@ struct Knob {
 const Knob kKnobs[] = {
     {"alpha",
      [](const std::string& name, const std::string& value, ExperimentRequest* r) {
-       const double ratio = r->truth.values[1][0] / r->truth.values[0][0];
-       r->truth.values[0][0] = NumberOf(name, value);
-       r->truth.values[1][0] = ratio * r->truth.values[0][0];
+       const std::size_t place = Needed(name, "alpha_x", r->truth);
+       const double ratio = r->truth.values[place + 1][0] / r->truth.values[place][0], alpha = NumberOf(name, value);
+       SetTruth(name, value, place, alpha, &r->truth);
+       SetTruth(name, value, place + 1, ratio * alpha, &r->truth);
      }},
-    {"ratio", [](const std::string& name, const std::string& value,
-                 ExperimentRequest* r) { r->truth.values[1][0] = r->truth.values[0][0] / NumberOf(name, value); }},
+    {"ratio",
+     [](const std::string& name, const std::string& value, ExperimentRequest* r) {
+       const std::size_t place = Needed(name, "alpha_y", r->truth);
+       SetTruth(name, value, place, r->truth.values[place - 1][0] / NumberOf(name, value), &r->truth);
+     }},
     {"tilt",
      [](const std::string& name, const std::string& value, ExperimentRequest* r) {
-       r->truth.values[2][0] = 0;
-       r->truth.values[3][0] = DegreesToRadians(NumberOf(name, value));
+       const std::size_t place = Needed(name, "theta_y_deg", r->truth);
+       r->truth.values[place - 1][0] = 0;
+       SetTruth(name, value, place, DegreesToRadians(NumberOf(name, value)), &r->truth);
      }},
     {"incidences",
      [](const std::string& name, const std::string& value, ExperimentRequest* r) {
@@ -93,21 +137,14 @@ const Knob kKnobs[] = {
      }},
 };
 
-// False where no parameter of the truth has this name.
+// False where no parameter of the truth has this name, or it follows another one.
 bool TurnParameter(const std::string& name, const std::string& value, ExperimentRequest* request) {
-  const std::vector<Parameter> parameters = Parameters(request->truth.model);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].json_name != name) continue;
-    const double inside = NumberOf(name, value) * InsideFactor(parameters[i]);
-    if (!(inside >= parameters[i].low && inside <= parameters[i].high)) {
-      throw UsageError(fmt::format("--sweep {}: '{}' lies outside [{:g}, {:g}]", name, value,
-                                   parameters[i].low / InsideFactor(parameters[i]),
-                                   parameters[i].high / InsideFactor(parameters[i])));
-    }
-    std::fill(request->truth.values[i].begin(), request->truth.values[i].end(), inside);
-    return true;
-  }
-  return false;
+  const std::optional<std::size_t> place = PlaceOf(name, request->truth);
+  if (!place) return false;
+  const Parameter parameter = Parameters(request->truth.model)[*place];
+  if (IsTied(parameter)) return false;
+  SetTruth(name, value, *place, NumberOf(name, value) * InsideFactor(parameter), &request->truth);
+  return true;
 }
 
 bool TurnNoise(const std::string& name, const std::string& value, ExperimentRequest* request) {
@@ -125,7 +162,9 @@ std::vector<std::string> Swept(const ExperimentRequest& request) {
   for (const NoiseTerm& term : NoiseTerms()) {
     if (term.flag == nullptr) names.emplace_back(term.name);
   }
-  for (const Parameter& parameter : Parameters(request.truth.model)) names.push_back(parameter.json_name);
+  for (const Parameter& parameter : Parameters(request.truth.model)) {
+    if (!IsTied(parameter)) names.push_back(parameter.json_name);
+  }
   return names;
 }
 
@@ -149,8 +188,7 @@ Experiment MakeExperiment(const ExperimentRequest& request) {
   if (request.noise.across > 0 && (request.noise.source > 0 || !(request.noise.aperture > 0))) {
     throw UsageError(
         "noise term 'across' makes a rectangle of the detector that 'aperture' is along the meridian, before a source "
-        "that "
-        "is a point; give aperture, and leave source out");
+        "that is a point; give aperture, and leave source out");
   }
   if (request.turned && layout.isotropic) {
     throw UsageError(

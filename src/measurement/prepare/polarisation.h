@@ -17,7 +17,7 @@ bool IsUnpolarised(std::string_view name);
 // each of two that are orthogonal; repeated samples of one polarisation are averaged first. A pair that lacks a
 // polarisation is set aside as a hole. Four states of two letters each ("ss", "s p", ...) are those of the light before
 // and of a filter behind the sample: their sum is halved. Where one of the names stands for unpolarised light, its
-// samples are kept and the others are outside the selection. A weight becomes the mean of its samples'.
+// samples are kept and the others are outside the selection. Weights are gathered as values are.
 //
 // `polarisation` is one index into `names` a sample. Returns a remark that says what was done, empty where there is one
 // polarisation only. Throws InputError for more than two polarisations that are not such four, none of them

@@ -13,12 +13,20 @@ namespace {
 // Half the finest step of the goniometers in use: a slice is chosen by a rounded angle.
 constexpr double kSlack = 0.05 * kPi / 180;
 
+// The angle's turn that begins at `start`.
+double InTurn(double phi, double start) {
+  constexpr double kTurn = 2 * kPi;
+  const double offset = phi - start;
+  return start + offset - kTurn * std::floor(offset / kTurn);
+}
+
 bool AzimuthInRange(double phi, const AngleRange& range) {
-  if (std::isinf(range.low) && std::isinf(range.high)) return true;
-  if (std::isinf(range.low) || std::isinf(range.high)) return phi >= range.low - kSlack && phi <= range.high + kSlack;
-  const double turn = 2 * kPi;
-  const double offset = phi - (range.low - kSlack);
-  return offset - turn * std::floor(offset / turn) <= range.high - range.low + 2 * kSlack;
+  const bool from = std::isfinite(range.low), to = std::isfinite(range.high);
+  if (!from && !to) return true;
+  if (from && to) return InTurn(phi, range.low - kSlack) <= range.high + kSlack;
+  // The bounds of the turn belong to it as they are written: 0 and not 360, -180 below and 180 above an angle.
+  if (from) return InTurn(phi, range.low < 0 ? kSlack - kPi : -kSlack) >= range.low - kSlack;
+  return InTurn(phi, range.high < 0 ? -kPi - kSlack : -kSlack) <= range.high + kSlack;
 }
 
 double ParseBound(std::string_view text, double missing, const std::string& whole, const std::string& option) {

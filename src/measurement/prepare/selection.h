@@ -17,7 +17,8 @@ struct AngleRange {
 struct Selection {
   // Polar angle of wi; a range of one value selects one slice (0.05 degrees are allowed on either side).
   AngleRange theta_i;
-  // Azimuth of wi; compared modulo a full turn. Does not apply to wi along the normal, which has no azimuth.
+  // Azimuth of wi; compared modulo a full turn. A range with one bound ends with the turn: of 0 to 360 degrees, or of
+  // -180 to 180 where the bound is negative. Does not apply to wi along the normal, which has no azimuth.
   AngleRange phi_i;
   // Both wi and wo must be at most this far from the normal.
   double theta_max = std::numeric_limits<double>::infinity();

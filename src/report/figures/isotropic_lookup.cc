@@ -96,6 +96,7 @@ bool IsotropicLookup::FindInFullCells(double h, double d, double phi, double* f_
 
 bool IsotropicLookup::Find(const Vec3& wi, const Vec3& wo, double* f_r) const {
   const Coordinates at = CoordinatesOf(ToFoldedHalfDifference(wi, wo));
+  if (!std::isfinite(at.h + at.d + at.phi)) return false;  // opposite directions have no half vector
   if (FindInFullCells(at.h, at.d, at.phi, f_r)) return true;
   std::array<ScatterTree::Neighbour, ScatterTree::kMost> found;
   const int have = tree_->Nearest(PointOf(at), 6, &found);

@@ -179,15 +179,22 @@ ResidualBand::ResidualBand(const ReportData& data, std::size_t channel) {
   }
   std::vector<double> gathered;
   double sum = 0;
-  for (std::size_t bin = 0; bin < ratios.size(); ++bin) {
-    gathered.insert(gathered.end(), ratios[bin].begin(), ratios[bin].end());
-    sum += sums[bin];
-    if (gathered.size() < enough) continue;
+  const auto end_bin = [&] {
     centers_.push_back(DegreesToRadians(sum / static_cast<double>(gathered.size())));
     quantiles_.push_back({Quantile(&gathered, 0.05), Quantile(&gathered, 0.5), Quantile(&gathered, 0.95)});
     gathered.clear();
     sum = 0;
+  };
+  std::size_t left = 0;  // samples of this bin and of those after it
+  for (const std::vector<double>& bin : ratios) left += bin.size();
+  for (std::size_t bin = 0; bin < ratios.size(); ++bin) {
+    gathered.insert(gathered.end(), ratios[bin].begin(), ratios[bin].end());
+    sum += sums[bin];
+    left -= ratios[bin].size();
+    // The last ones are no bin of their own either.
+    if (gathered.size() >= enough && left >= enough) end_bin();
   }
+  if (!gathered.empty()) end_bin();
 }
 
 ResidualBand::Quantiles ResidualBand::At(double theta_h) const {

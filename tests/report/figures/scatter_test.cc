@@ -100,5 +100,16 @@ TEST(IsotropicLookup, ObeysReciprocityAndMirrorSymmetry) {
   EXPECT_NEAR(a, c, 1e-5 * a);
 }
 
+// At the horizon, where light and viewer may stand opposite to each other, there is no half vector.
+TEST(IsotropicLookup, KnowsNothingOfOppositeDirections) {
+  const Material material = test::MakeMaterial(1, true);
+  const IsotropicLookup lookup(test::Measure(material, test::TablePairs(), 0, true));
+  double value = -7;
+  for (const Vec3& w : {Vec3{1, 0, 0}, Vec3{0, -1, 0}}) {
+    EXPECT_FALSE(lookup.Find(w, -w, &value));
+    EXPECT_EQ(value, -7) << "nothing is written";
+  }
+}
+
 }  // namespace
 }  // namespace lobefit
