@@ -124,7 +124,10 @@ TEST(CsvConventions, AnglesFromTheSurface) {
   EXPECT_NEAR(light(one), 30, 1e-9);
   EXPECT_NEAR(ViewerDeg(one), 50, 1e-9);
   for (const char* line : {"# angles measured from the surface normal", "# scattering from the surface of a tile",
-                           "# measured at a grazing angle", "# angles are not measured from the surface"})
+                           "# measured at a grazing angle", "# angles are not measured from the surface",
+                           "# light scattered from the surface at each angle", "# grazing angles are left out",
+                           "# angle step 5, distance from the surface 50 cm", "# up to grazing angles",
+                           "# Scattered light from the surface for an angle of incidence of 60 degrees"})
     EXPECT_NEAR(light(ReadText(std::string(line) + "\n" + row)), 60, 1e-9) << line;
   ReadOptions options;
   options.columns = "theta_i=theta_i,theta_o=theta_o";

@@ -148,34 +148,64 @@ bool ReadViewerZero(std::size_t line, const std::vector<std::string>& words, Csv
   return false;
 }
 
-// "All angles are measured from the surface", "grazing angles", "Winkel zur Oberflaeche": of the light's, of the
-// viewer's, or of both where none is named.
-bool ReadSurface(std::size_t line, const std::vector<std::string>& words, CsvKeys* keys) {
+constexpr std::array<std::string_view, 4> kAngleParts = {"angle", "winkel", "angulo", "angolo"};
+constexpr std::array<std::string_view, 4> kLightParts = {"inciden", "einfall", "illumin", "light"};
+
+// Words of a sentence about angles that say nothing of where they count from.
+bool IsBesideAngle(std::string_view word) {
+  static constexpr std::array<std::string_view, 36> kBeside = {
+      "all",   "both",    "the",      "are",     "is",    "as",       "in",      "of",     "and",
+      "polar", "zenith",  "measured", "counted", "given", "taken",    "defined", "stated", "relative",
+      "with",  "respect", "to",       "degrees", "deg",   "rad",      "radians", "sample", "plane",
+      "alle",  "die",     "der",      "sind",    "und",   "gemessen", "strahl",  "theta",  "parallel"};
+  return std::find(kBeside.begin(), kBeside.end(), word) != kBeside.end() || HoldsAny(word, kLightParts) ||
+         HoldsAny(word, kViewer) || word.find_first_not_of("0123456789.=") == std::string_view::npos;
+}
+
+// Whether the words before `at` speak of an angle: "angle of incidence is measured" before "from".
+bool FollowsAngle(const std::vector<std::string>& words, std::size_t at) {
+  while (at > 0 && IsBesideAngle(words[at - 1])) --at;
+  return at > 0 && HoldsAny(words[at - 1], kAngleParts);
+}
+
+bool IsSurface(std::string_view word) {
   static constexpr std::array<std::string_view, 7> kSurface = {
       "surface", "horizon", "oberfl\u00e4che", "oberflaeche", "surfaces", "superficie", "ebene"};
+  return std::find(kSurface.begin(), kSurface.end(), word) != kSurface.end();
+}
+
+// "grazing angles", "all angles are elevation angles (0 = parallel)"; not "grazing angles are left out".
+bool AreGrazing(const std::vector<std::string>& words, std::size_t at) {
+  if ((words[at] != "grazing" && words[at] != "elevation") || at + 1 == words.size() ||
+      !HoldsAny(words[at + 1], kAngleParts))
+    return false;
+  return std::all_of(words.begin(), words.end(), [&](const std::string& word) {
+    return &word == &words[at] || IsBesideAngle(word) || HoldsAny(word, kAngleParts) || IsSurface(word);
+  });
+}
+
+// "All angles are measured from the surface", "grazing angles", "Winkel zur Oberflaeche": of the light's, of the
+// viewer's, or of both where none is named. Light is scattered "from the surface" too, at angles from the normal.
+bool ReadSurface(std::size_t line, const std::vector<std::string>& words, CsvKeys* keys) {
   static constexpr std::array<std::string_view, 5> kRelation = {"to", "respect", "relative", "zur", "gegen"};
-  static constexpr std::array<std::string_view, 4> kAngles = {"angle", "winkel", "angulo", "angolo"};
-  static constexpr std::array<std::string_view, 4> kLights = {"inciden", "einfall", "illumin", "light"};
   const auto any = [&](const auto& parts) {
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return HoldsAny(word, parts); });
   };
-  if (!any(kAngles)) return false;
+  if (!any(kAngleParts)) return false;
   bool found = false;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "not" || HoldsAny(words[i], std::array<std::string_view, 3>{"normal", "senkrecht", "lot"}))
       return false;
-    const bool graze = (words[i] == "grazing" || words[i] == "elevation") && i + 1 < words.size() &&
-                       HoldsAny(words[i + 1], kAngles) &&
-                       std::none_of(words.begin(), words.end(), [](const std::string& word) { return word == "at"; });
-    bool related = false;
-    for (std::size_t k = i - std::min<std::size_t>(i, 3); k < i; ++k)
-      related = related || IsFrom(words[k]) || HoldsAny(words[k], std::array<std::string_view, 1>{"zwischen"}) ||
-                std::find(kRelation.begin(), kRelation.end(), words[k]) != kRelation.end();
-    const bool surface = std::find(kSurface.begin(), kSurface.end(), words[i]) != kSurface.end();
-    found = found || graze || (surface && related);
+    found = found || AreGrazing(words, i);
+    if (!IsSurface(words[i])) continue;
+    for (std::size_t k = i - std::min<std::size_t>(i, 3); k < i; ++k) {
+      const bool relation = IsFrom(words[k]) || HoldsAny(words[k], std::array<std::string_view, 1>{"zwischen"}) ||
+                            std::find(kRelation.begin(), kRelation.end(), words[k]) != kRelation.end();
+      found = found || (relation && FollowsAngle(words, k));
+    }
   }
   if (!found) return false;
-  const bool light = any(kLights), viewer = any(kViewer);
+  const bool light = any(kLightParts), viewer = any(kViewer);
   keys->light_from_surface = keys->light_from_surface || light || !viewer;
   keys->viewer_from_surface = keys->viewer_from_surface || viewer || !light;
   keys->remarks.push_back(
