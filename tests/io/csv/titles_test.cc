@@ -61,6 +61,20 @@ TEST(CsvTitles, ChangeNothing) {
   EXPECT_TRUE(HasRemark(ReadText(Below("# BRDF and BRF of the sample")), "more than one kind of value"));
 }
 
+TEST(CsvTitles, MultiplesThatNoLineStatesForSure) {
+  for (const char* title : {"# values are multiplied by 1000", "# all data x 1000", "# data in percent",
+                            "# Werte in dB", "# all values have been multiplied by 100", "# scaling: 0.01"}) {
+    const Measurement m = ReadText(Below(title));
+    EXPECT_EQ(m.samples.values[0][0], 0.5) << title;
+    EXPECT_TRUE(HasRemark(m, "say with --value-scale")) << title;
+  }
+  for (const char* title : {"# humidity 45 percent", "# 10 times averaged", "# values in dB", "# BRDF data of 2024"})
+    EXPECT_FALSE(HasRemark(ReadText(Below(title)), "say with --value-scale")) << title;
+  ReadOptions options;
+  options.value_scale = "1/sr";
+  EXPECT_FALSE(HasRemark(ReadText(Below("# data in percent"), options), "say with --value-scale"));
+}
+
 TEST(CsvTitles, QuestionsWhereTheyLeaveItOpen) {
   for (const char* title :
        {"# relative to Spectralon", "# Normalized to white standard (Spectralon 99%)", "# Reflectance of soil"})

@@ -122,6 +122,21 @@ bool IsRelatedToWhite(std::string_view lower) {
   return HoldsAnyPart(lower, kRelated) && HoldsAnyPart(lower, kWhite);
 }
 
+// "values are multiplied by 1000", "data in percent", "Werte in dB", "scaling: 0.01": whether the numbers or the values
+// are the larger ones no such line says for sure.
+bool SpeaksOfMultiple(std::string_view lower) {
+  static constexpr std::array<std::string_view, 11> kTimes = {
+      "multipl", "times 1", " x 1", " x1", "\u00d7", "* 1", "*1", "scaled by", "scale factor", "scaling", "skalier"};
+  static constexpr std::array<std::string_view, 7> kUnits = {"percent", "prozent", "pourcent", "in %",
+                                                             "in db",   "decibel", "dezibel"};
+  static constexpr std::array<std::string_view, 10> kOfValues = {"value", "data",  "brdf",   "bsdf",    "readings",
+                                                                 "werte", "daten", "valeur", "valores", "f_r"};
+  const bool scaling = lower.starts_with("scal");
+  const bool digits = lower.find_first_of("0123456789") != std::string_view::npos;
+  return (HoldsAnyPart(lower, kOfValues) || scaling) &&
+         ((digits && HoldsAnyPart(lower, kTimes)) || HoldsAnyPart(lower, kUnits));
+}
+
 // Says nothing of both: "BRDF and BTDF".
 bool IsTransmission(std::string_view lower) {
   static constexpr std::array<std::string_view, 3> kPassed = {"btdf", "transmiss", "transmitt"};
@@ -165,6 +180,7 @@ ValueMention FindValueMention(const std::vector<std::string>& lines) {
     if (line.size() > kMostLetters || line.starts_with("truth, ")) continue;
     const std::string lower = ToLower(line);
     if (mention.arbitrary.empty() && IsArbitrary(lower)) mention.arbitrary = line;
+    if (mention.multiple.empty() && SpeaksOfMultiple(lower)) mention.multiple = line;
     if (mention.transmission.empty() && IsTransmission(lower)) mention.transmission = line;
     if (mention.polarised.empty() && IsPolarised(lower)) mention.polarised = line;
     const std::string quoted = "'" + Excerpt(line, 60) + "'";

@@ -19,6 +19,7 @@ struct ValueMention {
   // A kind that is not clear: two of them, a cosine of which angle, "reflectance" alone.
   std::string question;
   std::string arbitrary;     // a line by which the scale to 1/sr is not known
+  std::string multiple;      // a line by which the numbers may be a multiple of the values, or their logarithm
   std::string transmission;  // a line that speaks of light that passes the sample, and of no other
   std::string polarised;     // a line that names one polarisation
 };

@@ -50,7 +50,13 @@ void FindScale(const InputFile& file, const CsvHeader& header, const ReadOptions
     notes->remarks.push_back("a line says '" + Excerpt(mention.arbitrary, 60) +
                              "': where the scale of the values is not f_r in 1/sr, fit with --scale free");
   }
-  if (layout->value_scale.IsIdentity() && !layout->value_scale.arbitrary) return;
+  const bool plain = layout->value_scale.IsIdentity() && !layout->value_scale.arbitrary;
+  if (plain && options.value_scale.empty() && !header.keys.value_scale && !mention.multiple.empty()) {
+    notes->remarks.push_back("a line says '" + Excerpt(mention.multiple, 60) +
+                             "': the numbers are taken as the values; say with --value-scale, as 1e-3/sr, % or dB, "
+                             "where they are a multiple of them or their logarithm");
+  }
+  if (plain) return;
   notes->conventions["value-scale"] = Excerpt(unit.empty() ? "as stated" : unit) + " (" + origin + ")";
   if (layout->value_scale.arbitrary) {
     notes->remarks.push_back("the values have no unit that is known (" + Excerpt(unit) +
