@@ -118,20 +118,25 @@ void ReadParameters(const JsonReader& reader, Material* material) {
     const Json& entry = reader.Member(json, parameter.json_name.c_str());
     const double factor = InsideFactor(parameter);
     FittedParameter fitted;
+    const std::size_t expected = parameter.per_channel ? material->channels.size() : 1;
+    // null, of what is not known.
+    const auto numbers_or_none = [&](const char* member, double by) {
+      if (reader.Member(entry, member).is_null()) return std::vector<double>(expected, kNan);
+      return reader.GetNumbers(entry, member, by);
+    };
     fitted.values = reader.GetNumbers(entry, "value", factor);
-    fitted.standard_error = reader.GetNumbers(entry, "stderr", factor);
-    fitted.standard_error_clustered = reader.GetNumbers(entry, "stderr_clustered", factor);
-    if (entry.contains("clustered_freedom")) fitted.freedom = reader.GetNumbers(entry, "clustered_freedom", 1);
-    if (entry.contains("stderr_freedom")) fitted.independent_freedom = reader.GetNumbers(entry, "stderr_freedom", 1);
+    fitted.standard_error = numbers_or_none("stderr", factor);
+    fitted.standard_error_clustered = numbers_or_none("stderr_clustered", factor);
+    // Documents without degrees of freedom do not know them.
+    fitted.freedom.assign(expected, kNan);
+    if (entry.contains("clustered_freedom")) fitted.freedom = numbers_or_none("clustered_freedom", 1);
+    if (entry.contains("stderr_freedom")) fitted.independent_freedom = numbers_or_none("stderr_freedom", 1);
     if (entry.contains("stderr_by_file")) {
-      fitted.standard_error_by_file = reader.GetNumbers(entry, "stderr_by_file", factor);
-      fitted.freedom_by_file = reader.GetNumbers(entry, "by_file_freedom", 1);
+      fitted.standard_error_by_file = numbers_or_none("stderr_by_file", factor);
+      fitted.freedom_by_file = numbers_or_none("by_file_freedom", 1);
     }
     fitted.free = reader.Get<bool>(entry, "free");
     fitted.at_bound = reader.Get<bool>(entry, "at_bound");
-    const std::size_t expected = parameter.per_channel ? material->channels.size() : 1;
-    // Documents without degrees of freedom do not know them.
-    if (fitted.freedom.empty()) fitted.freedom.assign(expected, kNan);
     const auto check_count = [&](const std::vector<double>& numbers, const char* member, bool may_lack) {
       if (numbers.size() == expected || (may_lack && numbers.empty())) return;
       reader.Fail(fmt::format("parameter '{}' has {} {}, {} belong there", parameter.json_name, numbers.size(), member,

@@ -120,6 +120,15 @@ TEST(HostileMaterial, ListsOfOtherLengths) {
       }
     }
   }
+  // Materials that were not fitted have no errors.
+  Json bare = Good();
+  for (const char* member : {"stderr", "stderr_clustered", "clustered_freedom"})
+    bare["parameters"]["f0"][member] = nullptr;
+  for (const FittedParameter& parameter : MaterialFromJson(bare.dump(), "m.json").parameters) {
+    EXPECT_EQ(parameter.standard_error.size(), parameter.values.size());
+    EXPECT_EQ(parameter.standard_error_clustered.size(), parameter.values.size());
+    EXPECT_EQ(parameter.freedom.size(), parameter.values.size());
+  }
   Json json = Good();
   for (auto& [name, parameter] : json["parameters"].items()) parameter.erase("clustered_freedom");
   for (const FittedParameter& parameter : MaterialFromJson(json.dump(), "m.json").parameters)
