@@ -28,10 +28,10 @@ struct ExperimentRequest {
 // of an anisotropic model, a turned sample of a layout that has lost it.
 Experiment MakeExperiment(const ExperimentRequest& request);
 
-// What can be swept: a parameter of the truth by its name in documents (`alpha_x`, `theta_y_deg`) unless its NDF ties it
-// to another, `alpha` (alpha_x with the ratio kept), `ratio` (alpha_x / alpha_y), `tilt` (degrees, towards -x), a noise
-// term, `incidences` and `azimuths` (how many, evenly spread), `detector-step` (degrees), `metric` and `masking` (of the
-// fit). Parameters stay within their bounds.
+// What can be swept: a parameter of the truth by its name in documents (`alpha_x`, `theta_y_deg`) unless its NDF ties
+// it to another, `alpha` (alpha_x with the ratio kept), `ratio` (alpha_x / alpha_y), `tilt` (degrees, towards -x), a
+// noise term, `incidences` and `azimuths` (how many, evenly spread), `detector-step` (degrees), `metric` and `masking`
+// (of the fit). Parameters stay within their bounds.
 struct SweepPoint {
   std::string value;  // as given
   ExperimentRequest request;

@@ -43,8 +43,8 @@ double InverseRoot(double eigenvalue) { return 1 - eigenvalue > kAlone ? 1 / std
 
 // The same of one vector in the space of its powers [Lanczos 1950, with all earlier directions taken out again]: where
 // a cluster has nearly all the say in some of thousands of coordinates the series is endless, and eigenvectors of all
-// take minutes. Of 6406 coordinates, where the series took hundreds of terms, 40 to 80 powers do. False where the answer
-// still moves by more than a billionth after kMostPowers.
+// take minutes. Of 6406 coordinates, where the series took hundreds of terms, 40 to 80 powers do. False where the
+// answer still moves by more than a billionth after kMostPowers.
 bool ByPowers(const WhitenedMatrix& curvature, const Eigen::VectorXd& vector, Eigen::MatrixXd* result) {
   constexpr Eigen::Index kMostPowers = 400, kEvery = 20;
   const double length = vector.norm();

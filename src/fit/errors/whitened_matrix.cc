@@ -96,8 +96,8 @@ WhitenedMatrix& WhitenedMatrix::operator+=(const WhitenedMatrix& other) {
   return *this;
 }
 
-// By hand: Eigen's product of a symmetric matrix copies its blocks into panels first, which of a few rows takes ten times
-// as long as the product.
+// By hand: Eigen's product of a symmetric matrix copies its blocks into panels first, which of a few rows takes ten
+// times as long as the product.
 void WhitenedMatrix::AddOwnTimes(std::size_t channel, const double* vector, double* product) const {
   const Eigen::Index first = form_->first[channel], own = form_->own[channel];
   for (Eigen::Index j = 0; j < own; ++j) {
