@@ -12,7 +12,7 @@ namespace {
 constexpr int kStepsWithin = 12;
 constexpr double kShareOfTolerance = 0.3;
 // Where the whole's cost does not fall the stand-in promised too much: its next round is damped, as Marquardt's steps,
-// and those after it ever less. From 0.1 on, aluminium and a green fabric took a round more than from here.
+// and those after it ever less. From 0.03 on, aluminium and a green fabric took a round more than from here.
 constexpr double kFirstDamping = 0.01, kMostDamping = 1e3, kLeastDamping = 1e-4;
 // Of the cosine between a way and what the gradient changed by beyond what was known: below, a correction would be of
 // other directions. At 0.05 brass took five rounds in place of three.
