@@ -13,7 +13,13 @@ namespace {
 
 constexpr std::size_t kMostProse = 64;
 
-std::string_view BeforeDigits(std::string_view text) { return text.substr(0, text.find_first_of("0123456789")); }
+std::string WithoutNumbers(std::string_view text) {
+  std::string words;
+  for (const char c : text) {
+    if (std::string_view("0123456789.,+-").find(c) == std::string_view::npos) words.push_back(c);
+  }
+  return words;
+}
 
 }  // namespace
 
@@ -89,7 +95,7 @@ bool AmidRows::ReadKeyAmidRows(std::size_t number, std::string_view comment,
   }
   CsvKeys keys = header_.keys;
   if (!(fields.empty() ? ReadKey(file_, number, comment, &keys) : ReadKey(file_, number, fields, &keys))) {
-    if (!comment.empty() && prose_.size() < kMostProse) prose_.emplace(BeforeDigits(comment));
+    if (!comment.empty() && prose_.size() < kMostProse) prose_.insert(WithoutNumbers(comment));
     return false;
   }
   RequireSameUnits(file_, number, header_.keys, keys);
@@ -114,15 +120,15 @@ bool AmidRows::ReadKeyAmidRows(std::size_t number, std::string_view comment,
   return true;
 }
 
-// "# theta_i 30" before the next part, as the head states it of the first. Comments of a hundred thousand rows begin
-// alike: what was prose before is not looked at again, nor are rows that were commented out.
+// "# theta_i 30" before the next part, as the head states it of the first. Comments of a hundred thousand rows have the
+// same words about other numbers: what was prose before is not looked at again, nor are rows that were commented out.
 bool AmidRows::MayStateAnAngle(std::string_view comment) const {
   constexpr std::size_t kLongest = 60;
   const bool stated = !header_.keys.fixed.empty() || header_.keys.wavelength_nm;
   if (!stated || comment.size() > kLongest || comment.find_first_of("0123456789") == std::string_view::npos ||
       std::none_of(comment.begin(), comment.end(), [](char c) { return (c | 0x20) >= 'a' && (c | 0x20) <= 'z'; }))
     return false;
-  return prose_.find(BeforeDigits(comment)) == prose_.end();
+  return prose_.find(WithoutNumbers(comment)) == prose_.end();
 }
 
 // A file put behind another may have other units.

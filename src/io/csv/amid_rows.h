@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -49,7 +48,7 @@ class AmidRows {
   std::size_t words_ = 0, line_ = 0;
   std::string message_, text_;
   std::string page_;
-  std::set<std::string, std::less<>> prose_;  // beginnings of comments that stated nothing
+  std::set<std::string> prose_;  // words of comments that stated nothing
 };
 
 }  // namespace lobefit

@@ -1,10 +1,8 @@
 #include "lobefit/io/text/decoded_file.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <memory>
 
-#include <iconv.h>
 #include <zlib.h>
 
 #include "lobefit/base/error.h"
@@ -15,37 +13,6 @@ namespace {
 
 constexpr std::size_t kMostUnpacked = std::size_t{2} << 30;
 constexpr std::size_t kHead = std::size_t{64} << 10;
-
-// By iconv of the C library: it is everywhere, and knows the encodings that are needed.
-std::string Convert(std::string_view bytes, const char* from, const std::filesystem::path& path) {
-  const iconv_t converter = iconv_open("UTF-8", from);
-  const std::string name(from, std::string_view(from).find('/') == std::string_view::npos
-                                   ? std::string_view(from).size()
-                                   : std::string_view(from).find('/'));
-  if (converter == reinterpret_cast<iconv_t>(-1))
-    throw InputError(path.string() + ": is " + name + " text, which this system cannot convert; save it as UTF-8");
-  std::string text(bytes.size() * 3 / 2 + 16, '\0');
-  // iconv does not write to its input, but its interface was made before const.
-  char* in = const_cast<char*>(bytes.data());
-  std::size_t left = bytes.size(), used = 0;
-  while (left > 0) {
-    char* out = text.data() + used;
-    std::size_t room = text.size() - used;
-    const std::size_t result = iconv(converter, &in, &left, &out, &room);
-    used = text.size() - room;
-    if (result != static_cast<std::size_t>(-1)) break;
-    if (errno == E2BIG) {
-      text.resize(2 * text.size());
-      continue;
-    }
-    iconv_close(converter);
-    throw InputError(path.string() + ": byte " + std::to_string(bytes.size() - left) + ": is neither UTF-8 nor " +
-                     name + " text; save it as UTF-8");
-  }
-  iconv_close(converter);
-  text.resize(used);
-  return text;
-}
 
 bool IsTextByte(unsigned char byte) {
   return byte >= 0x20 || byte == '\t' || byte == '\n' || byte == '\r' || byte == '\f';
@@ -174,18 +141,15 @@ void DecodedFile::DecodeText() {
                                         ? "UTF-16BE"
                                         : Utf16Without(all)) {
     const bool mark = all[0] == '\xff' || all[0] == '\xfe';
-    replace(Convert(all.substr(mark ? 2 : 0), encoding, file_.path()));
+    replace(ToUtf8(all.substr(mark ? 2 : 0), encoding, file_.path()));
     remarks_.emplace_back("converted from UTF-16");
   } else if (const std::string_view head = all.substr(0, kHead); !IsUtf8(head) && IsText(head)) {
     // Numbers say nothing of the encoding; words stand at the beginning.
     constexpr std::size_t kWords = 4096;
     const std::string found = FindEncoding(all.substr(0, kWords));
-    if (found == "WINDOWS-1252") {
-      replace(Convert(all, "WINDOWS-1252//IGNORE", file_.path()));
-    } else {
-      replace(ConvertLoosely(all, found.c_str()));
-      remarks_.push_back("the text is no UTF-8 and was read as " + found);
-    }
+    const bool western = found == "WINDOWS-1252";
+    replace(ToUtf8(all, western ? "WINDOWS-1252//IGNORE" : found.c_str(), file_.path()));
+    if (!western) remarks_.push_back("the text is no UTF-8 and was read as " + found);
   }
   const std::string_view head = bytes().substr(0, kHead);
   if (head.find('\r') != std::string_view::npos && head.find('\n') == std::string_view::npos && IsText(head)) {

@@ -6,6 +6,8 @@
 
 #include <iconv.h>
 
+#include "lobefit/base/error.h"
+
 namespace lobefit {
 namespace {
 
@@ -24,35 +26,66 @@ constexpr std::array<Encoding, 6> kEncodings = {{
     {"WINDOWS-1251", {"угол", "угл", "паден", "отраж", "азимут", "зенит", "длина", "рассея"}},
 }};
 
+// By iconv of the C library: it is everywhere, and knows the encodings that are needed.
+class Converter {
+ public:
+  explicit Converter(const char* from) : converter_(iconv_open("UTF-8", from)) {}
+  Converter(const Converter&) = delete;
+  Converter& operator=(const Converter&) = delete;
+  ~Converter() {
+    if (IsKnown()) iconv_close(converter_);
+  }
+  bool IsKnown() const { return converter_ != reinterpret_cast<iconv_t>(-1); }
+
+  // Up to the first byte that is none of the encoding's; returns how many are left.
+  std::size_t Convert(std::string_view bytes, std::string* text) {
+    text->resize(bytes.size() * 3 / 2 + 16);
+    // iconv does not write to its input, but its interface was made before const.
+    char* in = const_cast<char*>(bytes.data());
+    std::size_t left = bytes.size(), used = 0;
+    while (left > 0) {
+      char* out = text->data() + used;
+      std::size_t room = text->size() - used;
+      const std::size_t result = iconv(converter_, &in, &left, &out, &room);
+      used = text->size() - room;
+      if (result != static_cast<std::size_t>(-1) || errno != E2BIG) break;
+      text->resize(2 * text->size());
+    }
+    text->resize(used);
+    return left;
+  }
+
+ private:
+  iconv_t converter_;
+};
+
 }  // namespace
 
-std::string ConvertLoosely(std::string_view text, const char* encoding) {
-  const iconv_t converter = iconv_open("UTF-8//IGNORE", encoding);
-  if (converter == reinterpret_cast<iconv_t>(-1)) return "";
-  std::string converted(3 * text.size() + 16, '\0');
-  // iconv does not write to its input, but its interface was made before const.
-  char* in = const_cast<char*>(text.data());
-  char* out = converted.data();
-  std::size_t left = text.size(), room = converted.size();
-  while (left > 0) {
-    const std::size_t result = iconv(converter, &in, &left, &out, &room);
-    if (result != static_cast<std::size_t>(-1) || errno == E2BIG || left == 0) break;
-    // A byte that is none of the encoding's.
-    ++in;
-    --left;
+std::string ToUtf8(std::string_view bytes, const char* encoding, const std::filesystem::path& path) {
+  const std::string_view all = encoding;
+  const std::string name(all.substr(0, all.find('/')));
+  Converter converter(encoding);
+  if (!converter.IsKnown())
+    throw InputError(path.string() + ": is " + name + " text, which this system cannot convert; save it as UTF-8");
+  std::string text;
+  const std::size_t left = converter.Convert(bytes, &text);
+  if (left > 0) {
+    throw InputError(path.string() + ": byte " + std::to_string(bytes.size() - left) + ": is neither UTF-8 nor " +
+                     name + " text; save it as UTF-8");
   }
-  iconv_close(converter);
-  converted.resize(converted.size() - room);
-  return converted;
+  return text;
 }
 
-const char* FindEncoding(std::string_view text) {
+const char* FindEncoding(std::string_view head) {
   const char* best = "WINDOWS-1252";
   std::size_t most = 0;
+  std::string text;
   for (const Encoding& encoding : kEncodings) {
-    const std::string converted = ConvertLoosely(text, encoding.name);
+    Converter converter(encoding.name);
+    if (!converter.IsKnown()) continue;
+    converter.Convert(head, &text);
     std::size_t found = 0;
-    for (const std::string_view word : encoding.words) found += converted.find(word) != std::string::npos ? 1 : 0;
+    for (const std::string_view word : encoding.words) found += text.find(word) != std::string::npos ? 1 : 0;
     if (found <= most) continue;
     most = found;
     best = encoding.name;

@@ -314,6 +314,16 @@ TEST(CsvKeys, LightsByTheirWavelength) {
   EXPECT_EQ(m.samples.values[1][0], 2);
 }
 
+// Prose amid the rows is looked at once, but what begins alike may state something.
+TEST(CsvKeys, LightsAndAnglesBehindProseAmidTheRows) {
+  const std::string rows = "theta_o,dphi,brdf\n40,180,1\n";
+  const Measurement lights = ReadText("# 450 nm\n# theta_i 30\n" + rows + "# 2 scans averaged\n# 650 nm\n40,180,2\n");
+  EXPECT_EQ(lights.channels.wavelengths_nm, (std::vector<double>{450, 650}));
+  const Measurement angles = ReadText("# theta_i 30\n" + rows + "# theta of scan 1\n# theta_i 45\n40,180,2\n");
+  ASSERT_EQ(angles.samples.size(), 2U);
+  EXPECT_NEAR(RadiansToDegrees(std::acos(angles.samples.wi_z[1])), 45, 1e-9);
+}
+
 TEST(CsvKeys, KeysInQuotes) {
   EXPECT_EQ(ReadText("\"AOI: 30\"\ntheta_o,brdf\n40,1\n").samples.size(), 1U);
   EXPECT_EQ(ReadText("\"AOI: 30, sample 7\"\ntheta_o,brdf\n40,1\n").samples.size(), 1U);

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "tests/io/csv/read_csv.h"
+#include <gmock/gmock.h>
 
 namespace lobefit {
 namespace {
@@ -336,6 +337,9 @@ TEST(CsvSpreadsheets, EncodingsOfOtherScripts) {
     ExpectSample(m, 0, 30, 0, 40, 180, 1);
     EXPECT_TRUE(HasRemark(m, name)) << name;
   }
+  // A byte that is left out of a number makes another number.
+  EXPECT_THAT(MessageOf("\xc8\xeb\xc9\xe4\xbd\xc7,\xb7\xb4\xc9\xe4\xbd\xc7,brdf\n30,40,0.1\xff 5\n"),
+              testing::HasSubstr("byte 28: is neither UTF-8 nor GB18030 text"));
 }
 
 }  // namespace
