@@ -1,11 +1,15 @@
 #include "lobefit/io/csv/amid_rows.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <utility>
 
 #include "lobefit/base/text/csv_fields.h"
 #include "lobefit/base/text/text.h"
+#include "lobefit/io/csv/head/cells.h"
 #include "lobefit/io/csv/head/head_lines.h"
+#include "lobefit/io/csv/names/name_rules.h"
 #include "lobefit/io/text/place.h"
 
 namespace lobefit {
@@ -95,7 +99,8 @@ bool AmidRows::ReadKeyAmidRows(std::size_t number, std::string_view comment,
   }
   CsvKeys keys = header_.keys;
   if (!(fields.empty() ? ReadKey(file_, number, comment, &keys) : ReadKey(file_, number, fields, &keys))) {
-    if (!comment.empty() && prose_.size() < kMostProse) prose_.insert(WithoutNumbers(comment));
+    if (!comment.empty() && !MentionsAnAngle(number, comment) && prose_.size() < kMostProse)
+      prose_.insert(WithoutNumbers(comment));
     return false;
   }
   RequireSameUnits(file_, number, header_.keys, keys);
@@ -129,6 +134,41 @@ bool AmidRows::MayStateAnAngle(std::string_view comment) const {
       std::none_of(comment.begin(), comment.end(), [](char c) { return (c | 0x20) >= 'a' && (c | 0x20) <= 'z'; }))
     return false;
   return prose_.find(WithoutNumbers(comment)) == prose_.end();
+}
+
+// "Scan 2: theta_i 45", which is no key: whether rows lie at another angle from there on, only its writer knows.
+bool AmidRows::MentionsAnAngle(std::size_t number, std::string_view comment) const {
+  constexpr std::size_t kMostWords = 8, kLongestName = 3;
+  static constexpr std::array<std::string_view, 10> kParts = {"thet", "inc",  "aoi", "angl", "winkel",
+                                                              "phi",  "azim", "emi", "sza",  "vza"};
+  if (header_.keys.fixed.empty() || !HoldsAnyPart(ToLower(comment), kParts)) return false;
+  std::string text(comment);
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return std::string_view(":=,;()").find(c) != std::string_view::npos; },
+      ' ');
+  std::vector<std::string_view> words = SplitBlanks(text);
+  std::erase_if(words, [](std::string_view word) { return word == "is" || word == "-" || word == "at"; });
+  if (words.size() > kMostWords) return false;
+  bool mentioned = false;
+  for (std::size_t at = 1; at < words.size(); ++at) {
+    const std::optional<double> angle = ParseDouble(NumberOfCell(words[at]));
+    if (!angle) continue;
+    for (std::size_t length = 1; length <= std::min(at, kLongestName); ++length) {
+      const auto first = words.begin() + static_cast<std::ptrdiff_t>(at - length);
+      const CsvColumn column =
+          ClassifyColumn(Join(std::vector<std::string>(first, first + static_cast<std::ptrdiff_t>(length)), " "));
+      const FixedCoordinate* stated =
+          column.role == ColumnRole::kCoordinate ? header_.keys.Find(column.coordinate) : nullptr;
+      if (stated == nullptr) continue;
+      mentioned = true;
+      if (stated->number == *angle) continue;
+      FailAtLine(file_, number,
+                 "'" + Excerpt(comment) + "' names another angle than that of the rows before, " +
+                     FormatDouble(stated->number) + "; where the rows after it lie there, write it as '# " +
+                     column.name + ": " + FormatDouble(*angle) + "', else without the angle");
+    }
+  }
+  return mentioned;
 }
 
 // A file put behind another may have other units.

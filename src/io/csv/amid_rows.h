@@ -35,6 +35,8 @@ class AmidRows {
 
  private:
   bool MayStateAnAngle(std::string_view comment) const;
+  // Throws InputError for one other than that of the rows.
+  bool MentionsAnAngle(std::size_t number, std::string_view comment) const;
   bool AreNamesAgain(const std::vector<std::string_view>& fields) const;
   bool AreUnitsAgain(const std::vector<std::string_view>& fields) const;
   // Throws InputError for a unit of a column that is not that of the rows before.

@@ -324,6 +324,20 @@ TEST(CsvKeys, LightsAndAnglesBehindProseAmidTheRows) {
   EXPECT_NEAR(RadiansToDegrees(std::acos(angles.samples.wi_z[1])), 45, 1e-9);
 }
 
+TEST(CsvKeys, AnglesAmidTheRowsThatAreNoKeysAreAskedAbout) {
+  const std::string head = "# theta_i 30\ntheta_o,dphi,brdf\n10,180,1\n# ", rows = "\n20,180,2\n";
+  for (const char* line : {"Scan 2: theta_i 45", "theta_i 45 scan 2", "scan 2 theta_i 45", "next: AOI=45 deg",
+                           "Scan 2 - incidence angle 45 deg", "angle of incidence is 45 degrees"}) {
+    EXPECT_THAT(MessageOf(head + line + rows), testing::HasSubstr("line 4: '" + std::string(line) + "' names another"));
+  }
+  // Said of the same angle first.
+  EXPECT_THAT(MessageOf(head + "scan 1 theta_i 30\n15,180,1\n# scan 2 theta_i 45" + rows),
+              testing::HasSubstr("line 6: 'scan 2 theta_i 45'"));
+  for (const char* line :
+       {"scan 2 theta_i 30", "Scan 2: 45 rows", "next scan", "lamp current 4.5 A", "step 5 of theta_o"})
+    EXPECT_EQ(ReadText(head + line + rows).samples.size(), 2U) << line;
+}
+
 TEST(CsvKeys, KeysInQuotes) {
   EXPECT_EQ(ReadText("\"AOI: 30\"\ntheta_o,brdf\n40,1\n").samples.size(), 1U);
   EXPECT_EQ(ReadText("\"AOI: 30, sample 7\"\ntheta_o,brdf\n40,1\n").samples.size(), 1U);

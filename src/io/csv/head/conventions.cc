@@ -7,17 +7,12 @@
 #include <vector>
 
 #include "lobefit/base/text/text.h"
+#include "lobefit/io/csv/names/name_rules.h"
 
 namespace lobefit {
 namespace {
 
 enum class Side { kNone, kMirror, kLight };
-
-template <std::size_t N>
-bool HoldsAny(std::string_view word, const std::array<std::string_view, N>& parts) {
-  return std::any_of(parts.begin(), parts.end(),
-                     [&](std::string_view part) { return word.find(part) != std::string_view::npos; });
-}
 
 // Parts of words, so that endings and letters with accents do not matter.
 constexpr std::array<std::string_view, 9> kMirror = {"forward", "specular", "mirror",    "spiegel", "glanz",
@@ -31,7 +26,7 @@ constexpr std::array<std::string_view, 10> kViewer = {"scatter",     "detector",
 constexpr std::array<std::string_view, 4> kIncident = {"incident", "incoming", "einfall", "incidence"};
 
 Side SideOf(std::string_view word) {
-  return HoldsAny(word, kMirror) ? Side::kMirror : HoldsAny(word, kLight) ? Side::kLight : Side::kNone;
+  return HoldsAnyPart(word, kMirror) ? Side::kMirror : HoldsAnyPart(word, kLight) ? Side::kLight : Side::kNone;
 }
 
 // 0 or 180 degrees, however the unit is written behind it.
@@ -125,21 +120,21 @@ bool ReadAzimuthZero(std::size_t line, const std::vector<std::vector<std::string
 bool ReadViewerZero(std::size_t line, const std::vector<std::string>& words, CsvKeys* keys) {
   static constexpr std::array<std::string_view, 9> kRelation = {"relative", "respect", "relativ",  "bezogen", "gegen",
                                                                 "rapport",  "relatif", "rispetto", "respecto"};
-  if (std::none_of(words.begin(), words.end(), [](const std::string& word) { return HoldsAny(word, kViewer); }))
+  if (std::none_of(words.begin(), words.end(), [](const std::string& word) { return HoldsAnyPart(word, kViewer); }))
     return false;
   if (std::find(words.begin(), words.end(), "not") != words.end()) return false;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (!IsFrom(words[i]) && !HoldsAny(words[i], kRelation)) continue;
+    if (!IsFrom(words[i]) && !HoldsAnyPart(words[i], kRelation)) continue;
     constexpr std::size_t kNear = 4;
     for (std::size_t k = i + 1; k < std::min(words.size(), i + 1 + kNear); ++k) {
-      if (HoldsAny(words[k], kMirror)) {
+      if (HoldsAnyPart(words[k], kMirror)) {
         keys->viewer_zero = ViewerZero::kMirror;
         keys->remarks.push_back("line " + std::to_string(line) +
                                 ": the viewer's angles count from the mirror direction, as the line says; --columns "
                                 "theta_o=NAME reads them from the normal");
         return true;
       }
-      if (HoldsAny(words[k], kIncident)) {
+      if (HoldsAnyPart(words[k], kIncident)) {
         keys->viewer_zero = ViewerZero::kIncidentBeam;
         return true;
       }
@@ -158,14 +153,14 @@ bool IsBesideAngle(std::string_view word) {
       "polar", "zenith",  "measured", "counted", "given", "taken",    "defined", "stated", "relative",
       "with",  "respect", "to",       "degrees", "deg",   "rad",      "radians", "sample", "plane",
       "alle",  "die",     "der",      "sind",    "und",   "gemessen", "strahl",  "theta",  "parallel"};
-  return std::find(kBeside.begin(), kBeside.end(), word) != kBeside.end() || HoldsAny(word, kLightParts) ||
-         HoldsAny(word, kViewer) || word.find_first_not_of("0123456789.=") == std::string_view::npos;
+  return std::find(kBeside.begin(), kBeside.end(), word) != kBeside.end() || HoldsAnyPart(word, kLightParts) ||
+         HoldsAnyPart(word, kViewer) || word.find_first_not_of("0123456789.=") == std::string_view::npos;
 }
 
 // Whether the words before `at` speak of an angle: "angle of incidence is measured" before "from".
 bool FollowsAngle(const std::vector<std::string>& words, std::size_t at) {
   while (at > 0 && IsBesideAngle(words[at - 1])) --at;
-  return at > 0 && HoldsAny(words[at - 1], kAngleParts);
+  return at > 0 && HoldsAnyPart(words[at - 1], kAngleParts);
 }
 
 bool IsSurface(std::string_view word) {
@@ -177,10 +172,10 @@ bool IsSurface(std::string_view word) {
 // "grazing angles", "all angles are elevation angles (0 = parallel)"; not "grazing angles are left out".
 bool AreGrazing(const std::vector<std::string>& words, std::size_t at) {
   if ((words[at] != "grazing" && words[at] != "elevation") || at + 1 == words.size() ||
-      !HoldsAny(words[at + 1], kAngleParts))
+      !HoldsAnyPart(words[at + 1], kAngleParts))
     return false;
   return std::all_of(words.begin(), words.end(), [&](const std::string& word) {
-    return &word == &words[at] || IsBesideAngle(word) || HoldsAny(word, kAngleParts) || IsSurface(word);
+    return &word == &words[at] || IsBesideAngle(word) || HoldsAnyPart(word, kAngleParts) || IsSurface(word);
   });
 }
 
@@ -189,17 +184,17 @@ bool AreGrazing(const std::vector<std::string>& words, std::size_t at) {
 bool ReadSurface(std::size_t line, const std::vector<std::string>& words, CsvKeys* keys) {
   static constexpr std::array<std::string_view, 5> kRelation = {"to", "respect", "relative", "zur", "gegen"};
   const auto any = [&](const auto& parts) {
-    return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return HoldsAny(word, parts); });
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return HoldsAnyPart(word, parts); });
   };
   if (!any(kAngleParts)) return false;
   bool found = false;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "not" || HoldsAny(words[i], std::array<std::string_view, 3>{"normal", "senkrecht", "lot"}))
+    if (words[i] == "not" || HoldsAnyPart(words[i], std::array<std::string_view, 3>{"normal", "senkrecht", "lot"}))
       return false;
     found = found || AreGrazing(words, i);
     if (!IsSurface(words[i])) continue;
     for (std::size_t k = i - std::min<std::size_t>(i, 3); k < i; ++k) {
-      const bool relation = IsFrom(words[k]) || HoldsAny(words[k], std::array<std::string_view, 1>{"zwischen"}) ||
+      const bool relation = IsFrom(words[k]) || HoldsAnyPart(words[k], std::array<std::string_view, 1>{"zwischen"}) ||
                             std::find(kRelation.begin(), kRelation.end(), words[k]) != kRelation.end();
       found = found || (relation && FollowsAngle(words, k));
     }
@@ -222,7 +217,7 @@ bool ReadConvention(std::size_t line, std::string_view text, CsvKeys* keys) {
   if (text.size() > kMostLetters || text.size() < 8) return false;
   const std::vector<std::vector<std::string>> clauses = ClausesOf(text);
   const auto is_azimuth = [](const std::string& word) {
-    return HoldsAny(word, kAzimuth) || word == "phi" || word == "raa" || word == "dphi";
+    return HoldsAnyPart(word, kAzimuth) || word == "phi" || word == "raa" || word == "dphi";
   };
   for (const std::vector<std::string>& clause : clauses) {
     if (std::any_of(clause.begin(), clause.end(), is_azimuth)) return ReadAzimuthZero(line, clauses, keys);

@@ -16,12 +16,6 @@ namespace {
 constexpr std::size_t kMostLetters = 120;  // more are a description
 constexpr std::size_t kMostWords = 10;
 
-template <std::size_t N>
-bool HoldsAnyPart(std::string_view text, const std::array<std::string_view, N>& parts) {
-  return std::any_of(parts.begin(), parts.end(),
-                     [&](std::string_view part) { return text.find(part) != std::string_view::npos; });
-}
-
 // One of them stands in every line that names a kind of value; other lines are not taken apart.
 bool MayNameKind(std::string_view lower) {
   static constexpr std::array<std::string_view, 20> kParts = {

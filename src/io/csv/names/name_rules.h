@@ -21,6 +21,13 @@ bool HoldsWord(const std::array<std::string_view, N>& set, std::string_view word
   return std::any_of(set.begin(), set.end(), [&](std::string_view known) { return SameWord(known, word); });
 }
 
+// Whether one of the parts stands anywhere in the text.
+template <std::size_t N>
+bool HoldsAnyPart(std::string_view text, const std::array<std::string_view, N>& parts) {
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](std::string_view part) { return text.find(part) != std::string_view::npos; });
+}
+
 // "incident_angle".
 std::string Joined(const NameList& words);
 // Without "of", "the", "mean" and their like; all of them where nothing else is left.
