@@ -38,28 +38,29 @@ class UnlikeRepeats {
     if (samples_.wi_z[again] > 1 - 1e-12 || samples_.wo_z[again] > 1 - 1e-12) return;
     const double a = samples_.values[0][first], b = samples_.values[0][again];
     if (std::isnan(a) || std::isnan(b)) return;
-    greater_.push_back(std::max(a, b));
-    lesser_.push_back(std::min(a, b));
+    // What is dark may scatter by any factor.
+    if (repeats_++ == 0) largest_ = Largest();
+    unlike_ += std::max(a, b) > 0.02 * largest_ && std::max(a, b) > 2 * std::min(a, b) ? 1 : 0;
   }
 
-  // Empty where most are alike. What is dark may scatter by any factor.
+  // Empty where most are alike.
   std::string Remark() const {
-    if (greater_.empty()) return "";
-    double largest = 0;
-    for (const double value : samples_.values[0]) largest = std::max(largest, value);
-    std::size_t unlike = 0;
-    for (std::size_t k = 0; k < greater_.size(); ++k)
-      unlike += greater_[k] > 0.02 * largest && greater_[k] > 2 * lesser_[k] ? 1 : 0;
-    if (5 * unlike <= greater_.size()) return "";
-    return "directions occur again, and " + std::to_string(unlike) + " of " + std::to_string(greater_.size()) +
+    if (5 * unlike_ <= repeats_) return "";
+    return "directions occur again, and " + std::to_string(unlike_) + " of " + std::to_string(repeats_) +
            " repetitions differ from the first by more than a factor of two: is something missing that tells them "
-           "apart "
-           "(an azimuth, a wavelength, the sample)? Only the first of each are kept";
+           "apart (an azimuth, a wavelength, the sample)? Only the first of each are kept";
   }
 
  private:
+  double Largest() const {
+    double largest = 0;
+    for (const double value : samples_.values[0]) largest = std::max(largest, value);
+    return largest;
+  }
+
   const Samples& samples_;
-  std::vector<double> greater_, lesser_;
+  std::size_t repeats_ = 0, unlike_ = 0;
+  double largest_ = 0;
 };
 
 }  // namespace
